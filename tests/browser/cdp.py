@@ -40,6 +40,7 @@ FLAGS = (
 )
 START_S = 60
 ANSWER_S = 60
+MAX_PAGES = 5
 CTRL = 2  # among the modifiers of an event
 
 
@@ -73,6 +74,10 @@ def require_page() -> None:
 
 class PageError(Exception):
     """The page threw, or did not become what was waited for."""
+
+
+class PageLeft(PageError):
+    """The page went elsewhere while it was asked."""
 
 
 class Chromium:
@@ -136,7 +141,7 @@ class Chromium:
     def wait_for(self, condition: str, timeout: float = 60) -> Any:
         """Wait in the page until an expression is true, and return its value."""
         limit = int(1000 * timeout)
-        value = self.evaluate(
+        value = self._evaluate_across_pages(
             f"""new Promise((resolve) => {{
                 const until = performance.now() + {limit};
                 const look = () => {{
@@ -151,6 +156,13 @@ class Chromium:
         if not value:
             raise PageError(f"not true within {timeout} s: {condition}; errors: {self.errors}")
         return value
+
+    def _evaluate_across_pages(self, expression: str) -> Any:
+        """Evaluate, and again on the next page when the page goes elsewhere by itself."""
+        for _ in range(MAX_PAGES):
+            with contextlib.suppress(PageLeft):
+                return self.evaluate(expression)
+        return None
 
     def press(self, key: str, *, ctrl: bool = False) -> None:
         """Press and release a key."""
@@ -185,6 +197,13 @@ class Chromium:
         """Click the middle of an element twice."""
         self.click_on(selector)
         self.click_on(selector, count=2)
+
+    def choose_file(self, selector: str, path: Path) -> None:
+        """Choose a file in a field of files, as its dialog does."""
+        self.wait_for(f"document.querySelector({selector!r}) !== null")
+        root = self._run(self._command("DOM.getDocument"))["root"]["nodeId"]
+        node = self._run(self._command("DOM.querySelector", nodeId=root, selector=selector))["nodeId"]
+        self._run(self._command("DOM.setFileInputFiles", files=[str(path)], nodeId=node))
 
     def drag(
         self,
@@ -290,7 +309,9 @@ class Chromium:
             if "id" in content:
                 answer = self._answers.pop(content["id"])
                 if "error" in content:
-                    answer.set_exception(PageError(content["error"]["message"]))
+                    text = content["error"]["message"]
+                    left = "navigated" in text or "context was destroyed" in text
+                    answer.set_exception(PageLeft(text) if left else PageError(text))
                 else:
                     answer.set_result(content["result"])
             else:

@@ -31,7 +31,7 @@ RVIZ = str(Path(daidalos.__file__).parent / "share/turtle_tf2_py/rviz/turtle_rvi
         (("rqt_topic", "rqt_topic"), "?panel=topics", "/rqt_gui_py_node_\\d+"),
         (("rqt_publisher", "rqt_publisher"), "?panel=publish", "/rqt_gui_py_node_\\d+"),
         (("rqt_service_caller", "rqt_service_caller"), "?panel=service", "/rqt_gui_py_node_\\d+"),
-        (("rqt_gui", "rqt_gui"), "", "/rqt_gui_py_node_\\d+"),
+        (("rqt_gui", "rqt_gui"), "?panel=plugins", "/rqt_gui_py_node_\\d+"),
         (("rqt", "rqt", "-s", "rqt_graph.ros_graph.RosGraph"), "?panel=graph", "/rqt_gui_py_node_\\d+"),
         (("rviz2", "rviz2", "-f", "world"), "?panel=scene&fixed_frame=world", "/rviz"),
         (("rviz2", "rviz2", "-d", RVIZ), "?panel=scene&layout=turtle_rviz.rviz", "/rviz"),

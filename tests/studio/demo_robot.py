@@ -86,6 +86,7 @@ class DemoRobot:
         add("/clicked_point", "geometry_msgs/msg/PointStamped")
         add("/markers", "visualization_msgs/msg/MarkerArray")
         add("/camera/image_raw", "sensor_msgs/msg/Image")
+        add("/camera/camera_info", "sensor_msgs/msg/CameraInfo")
         add("/local_costmap/published_footprint", "geometry_msgs/msg/PolygonStamped")
         if self._maps:
             add("/map", "nav_msgs/msg/OccupancyGrid", latched=True)
@@ -389,6 +390,22 @@ class DemoRobot:
         image[height // 2 :, :, :] = 70
         center = int(width / 2 + 50 * math.sin(self.now))
         image[40:80, max(0, center - 15) : center + 15] = (226, 163, 85)
+        focal, cx, cy = 130.0, width / 2, height / 2
+        self._send(
+            "/camera/camera_info",
+            "sensor_msgs/msg/CameraInfo",
+            header=self._header("camera_rgb_optical_frame"),
+            height=height,
+            width=width,
+            distortion_model="plumb_bob",
+            d=np.zeros(5),
+            r=np.eye(3).ravel(),
+            binning_x=0,
+            binning_y=0,
+            roi=make("sensor_msgs/msg/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False),
+            k=np.array([focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0]),
+            p=np.array([focal, 0.0, cx, 0.0, 0.0, focal, cy, 0.0, 0.0, 0.0, 1.0, 0.0]),
+        )
         self._send(
             "/camera/image_raw",
             "sensor_msgs/msg/Image",

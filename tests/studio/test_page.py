@@ -11,11 +11,13 @@ import pytest
 from browser.cdp import Chromium, require_chromium, require_page
 from daidalos.studio.arrangement import Arrangement, Curve, Display, Plot, Split, View
 from daidalos.studio.assets import AssetResolver
+from daidalos.studio.rviz_config import parse_rviz
 from daidalos.studio.server import StudioServer
 
 from . import display_zoo
 from .demo_robot import SHARE, DemoRobot
 from .memory_source import MemorySource, decode, encode, make, schema
+from .test_rviz_config import ROS_2
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -63,6 +65,7 @@ def page(browser: Chromium, source: MemorySource, robot: DemoRobot) -> Iterator[
     with serve(source) as server:
         show(browser, server.url)
         browser.wait_for(SEES, 60)
+        browser.wait_for("daidalos.state().settled")
         yield browser
         assert browser.errors == []
 
@@ -432,3 +435,114 @@ def test_speaks_with_foxgloves_server(browser, source):
     finally:
         theirs.stop()
     assert decode(name, data).point.x == pytest.approx(0.3, abs=0.02)
+
+
+ADDED = "[...document.querySelectorAll('[data-display]')].map((e) => e.dataset.display)"
+TABS = "[...document.querySelectorAll('.dv-tab')].map((e) => e.textContent)"
+
+
+def test_a_display_is_added_by_its_topic_and_the_focus_is_given_back(page):
+    page.click_on("[data-test=add-display]")
+    page.wait_for("document.querySelector('dialog[open]')?.contains(document.activeElement)")
+    page.click_on("[data-tab=topic]")
+    page.wait_for("document.querySelector('[data-add=\"/camera/image_raw Camera\"]') !== null")
+    page.press("ArrowLeft")
+    page.wait_for("document.querySelector('[data-tab=type]').ariaSelected === 'true'")
+    page.press("ArrowRight")
+    page.click_on("[data-add='/camera/image_raw Image']")
+    page.wait_for(f"{ADDED}.includes('camera/image_raw') && {TABS}.includes('camera/image_raw')")
+    page.wait_for("document.querySelector('[data-panel=image] canvas').width === 160")
+    assert page.evaluate("document.activeElement.dataset.test") == "add-display"
+    page.click_on("input[aria-label='Show camera/image_raw']")
+    page.wait_for(f"!{TABS}.includes('camera/image_raw')")
+
+
+def test_a_camera_display_draws_the_scene_over_its_pictures(page):
+    page.click_on("[data-test=add-display]")
+    page.click_on("[data-tab=topic]")
+    page.click_on("[data-add='/camera/image_raw Camera']")
+    page.wait_for("document.querySelector('[data-test=overlay]')?.width === 160")
+    drawn = """(() => {
+        const canvas = document.querySelector('[data-test=overlay]');
+        const copy = document.createElement('canvas');
+        [copy.width, copy.height] = [canvas.width, canvas.height];
+        const pen = copy.getContext('2d');
+        pen.drawImage(canvas, 0, 0);
+        return pen.getImageData(0, 0, copy.width, copy.height).data.filter((_, i) => i % 4 === 3).some((a) => a > 0);
+    })"""
+    page.wait_for(f"new Promise((done) => requestAnimationFrame(() => done({drawn}())))")
+
+
+def test_what_is_shown_is_saved_and_opened_as_a_configuration_of_rviz(browser, source, robot, tmp_path):
+    file = tmp_path / "mine.rviz"
+    file.write_text(ROS_2)
+    with serve(source) as server:
+        show(browser, server.url)
+        browser.choose_file("[data-test=layout-file]", file)
+        browser.wait_for(
+            f"location.search.includes('layout=mine.rviz') && {READY} && {ADDED}.includes('Particles')", 60
+        )
+        browser.wait_for("document.querySelector('[data-display=Particles] [title]').title.includes('not supported')")
+        browser.click_on("input[aria-label='Show LaserScan']")
+        browser.evaluate("URL.createObjectURL = (blob) => { window.saved = blob.text(); return 'data:,'; }")
+        browser.click_on("[data-test=file]")
+        browser.evaluate(
+            "[...document.querySelectorAll('.menu-item')].find((e) => e.textContent.includes('.rviz') &&"
+            " e.textContent.includes('Save')).click()"
+        )
+        saved = browser.wait_for("window.saved")
+    before, after = parse_rviz(ROS_2, "a"), parse_rviz(saved, "b")
+    changed = {a.name for a, b in zip(before.displays, after.displays, strict=True) if a != b}
+    assert changed == {"LaserScan"}
+    assert (after.view, after.fixed_frame) == (before.view, before.fixed_frame)
+
+
+def test_a_layout_is_saved_and_opened(browser, source, robot, tmp_path):
+    with serve(source) as server:
+        show(browser, server.url)
+        browser.wait_for(SEES, 60)
+        browser.click_on("input[aria-label='Show Laser scan']")
+        browser.evaluate("URL.createObjectURL = (blob) => { window.saved = blob.text(); return 'data:,'; }")
+        browser.click_on("[data-test=file]")
+        browser.evaluate(
+            "[...document.querySelectorAll('.menu-item')].find((e) => e.textContent.includes('Save layout')).click()"
+        )
+        file = tmp_path / "mine.json"
+        file.write_text(browser.wait_for("window.saved"))
+        show(browser, server.url)
+        browser.wait_for(SEES, 60)
+        assert browser.evaluate("document.querySelector(\"input[aria-label='Show Laser scan']\").checked")
+        browser.choose_file("[data-test=layout-file]", file)
+        off = "document.querySelector(\"input[aria-label='Show Laser scan']\")?.checked === false"
+        browser.wait_for(f"{READY} && {off}", 60)
+        broken = tmp_path / "broken.rviz"
+        broken.write_text("Panels: []")
+        browser.choose_file("[data-test=layout-file]", broken)
+        browser.wait_for("document.querySelector('.pill.status')?.textContent.includes('broken.rviz: not a display')")
+
+
+def test_labels_of_frames_do_not_lie_over_each_other(page):
+    page.click_on("[data-display=TF] button.grow")
+    page.click_on("[data-display=TF] input[aria-label=Names]")
+    boxes = page.wait_for("daidalos.labels().length > 8 && daidalos.labels()")
+    overlaps = [
+        (a["text"], b["text"])
+        for i, a in enumerate(boxes)
+        for b in boxes[i + 1 :]
+        if a["left"] < b["right"] and b["left"] < a["right"] and a["top"] < b["bottom"] and b["top"] < a["bottom"]
+    ]
+    assert overlaps == []
+
+
+def test_nothing_but_its_x_closes_a_panel(page):
+    for _ in range(2):
+        for title in ("Message", "Topics", "Log", "Plot"):
+            place = page.evaluate(
+                f"(() => {{ const tabs = [...document.querySelectorAll('.dv-tab')], title = '{title}';"
+                " const b = tabs.find((e) => e.textContent === title).getBoundingClientRect();"
+                " return [b.x, b.width, b.y + b.height / 2]; })()"
+            )
+            left, width, y = place
+            for share in (0.2, 0.5, 0.7):
+                page.click(left + share * width, y)
+            page.wait_for(f"document.querySelectorAll('.dv-tab').length === 6 && {TABS}.includes('{title}')")

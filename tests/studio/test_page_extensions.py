@@ -159,6 +159,12 @@ export default ({ three, StampedDisplay }) => {
 """
 
 
+def add_display(browser: Chromium, kind: str) -> None:
+    browser.click_on("[data-test=add-display]")
+    browser.click_on(f"[data-add={kind}]")
+    browser.wait_for("document.querySelector('dialog') === null")
+
+
 def test_a_display_from_outside_draws_and_says_what_went_wrong(
     browser, source, server, install: Install, tmp_path
 ) -> None:
@@ -173,9 +179,9 @@ def test_a_display_from_outside_draws_and_says_what_went_wrong(
 
     send(1.0)
     show(browser, server.url)
-    choose(browser, "Add display", "Cubes")
+    add_display(browser, "Cubes")
     browser.wait_for("daidalos.state().displays.Cubes?.text === '1 cubes'")
-    choose(browser, "Add display", "Absent")
+    add_display(browser, "Absent")
     browser.wait_for("daidalos.state().displays.Absent?.level === 'error'")
     assert "has no file absent.js" in browser.evaluate("daidalos.state().displays.Absent.text")
     send(9.0)

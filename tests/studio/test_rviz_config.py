@@ -65,15 +65,16 @@ def read(tmp_path, text):
 def test_displays_of_ros_2(tmp_path):
     arrangement = read(tmp_path, ROS_2)
     assert arrangement.fixed_frame == "odom"
-    grid, costmap, scan = arrangement.displays
-    assert grid == Display("Grid", "Grid", True, {"cells": 10.0, "size": 2.0, "alpha": 0.5, "color": "#a0a0a4"})
+    grid, costmap, scan, image, particles = arrangement.displays
+    assert grid == Display("Grid", "Grid", True, {"cells": 10.0, "size": 2.0, "alpha": 0.5, "color": "#a0a0a4"}, "0")
+    assert image == Display("Image", "Image", True, {"topic": "/camera/image_raw"}, "3")
+    assert particles == Display("nav2_rviz_plugins/ParticleCloud", "Particles", True, {}, "4"), "it stays in the list"
     assert (costmap.name, costmap.enabled) == ("Navigation/Costmap", False), "its group is switched off"
     assert costmap.settings == {"topic": "/global_costmap/costmap", "scheme": "costmap", "layer": "behind"}
     assert scan.settings == {
         "topic": "/scan", "colorBy": "flat", "style": "squares", "pixels": 3.0, "metres": 0.01, "decay": 0.0,
         "color": "#ff0000",
     }  # fmt: skip
-    assert arrangement.images == ("/camera/image_raw",)
     assert arrangement.left_out == ("Particles (nav2_rviz_plugins/ParticleCloud)",)
     view = arrangement.view
     assert (view.kind, view.focus, view.distance, view.yaw, view.pitch) == ("orbit", (1, 2, 0.5), 12, 1.5, 0.6)
@@ -83,10 +84,10 @@ def test_displays_of_ros_2(tmp_path):
 
 def test_displays_of_ros_1(tmp_path):
     arrangement = read(tmp_path, ROS_1)
-    markers, odometry = arrangement.displays
-    assert markers == Display("MarkerArray", "Markers", True, {"topic": "/visualization_marker_array"})
+    image, markers, odometry = arrangement.displays
+    assert (image.enabled, image.settings) == (False, {"topic": "/usb_cam/image_raw"})
+    assert markers == Display("MarkerArray", "Markers", True, {"topic": "/visualization_marker_array"}, "1")
     assert odometry.settings == {"topic": "/odom", "keep": 50.0, "color": "#00ff00"}
-    assert arrangement.images == (), "it is switched off"
     assert (arrangement.view.kind, arrangement.view.focus) == ("top", (3, -1, 0))
     assert arrangement.followed == "base_link"
 

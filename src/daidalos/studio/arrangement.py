@@ -26,18 +26,21 @@ class Display:
     Parameters
     ----------
     type : str
-        RViz's class without its package, e.g. ``LaserScan``.
+        RViz's class without its package, e.g. ``LaserScan``; with it where the page has no such display.
     name : str
     enabled : bool
     settings : dict
         Values by the keys that the page's display of this type has, ``topic`` among them; what is left out has
         the page's default.
+    origin : str
+        Its place in the file that it was read from; empty for one that was added.
     """
 
     type: str
     name: str
     enabled: bool = True
     settings: dict[str, Value] = field(default_factory=dict)
+    origin: str = ""
 
 
 @dataclass(frozen=True)
@@ -107,8 +110,6 @@ class Arrangement:
         Empty: the page selects one.
     displays : tuple of Display, or None
         None: the page's default.
-    images : tuple of str
-        Topics of images to show beside the 3-D view.
     view : View or None
     followed : str
         The frame that the camera moves along with; empty: none.
@@ -118,16 +119,18 @@ class Arrangement:
         Time span of plots over time [s]; 0: the page's default.
     left_out : tuple of str
         What the file asks for and the studio does not have, for a message to the user.
+    source : str
+        The text of the display configuration that it was read from, so that saving keeps what is not known here.
     """
 
     fixed_frame: str = ""
     displays: tuple[Display, ...] | None = None
-    images: tuple[str, ...] = ()
     view: View | None = None
     followed: str = ""
     tabs: tuple[tuple[str, Plot | Split], ...] = ()
     span: float = 0.0
     left_out: tuple[str, ...] = ()
+    source: str = ""
 
     def to_json(self) -> dict[str, Any]:
         """Return what the page reads; its types are generated from the classes above."""

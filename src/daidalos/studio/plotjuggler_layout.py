@@ -23,8 +23,19 @@ def read_plotjuggler(path: Path) -> Arrangement:
     OSError
         When it cannot be read.
     """
+    return parse_plotjuggler(path.read_bytes(), str(path))
+
+
+def parse_plotjuggler(text: bytes, path: str) -> Arrangement:
+    """Parse the text of a layout; `path` is the file's, for errors.
+
+    Raises
+    ------
+    ArrangementError
+        When it is not a layout of PlotJuggler.
+    """
     try:
-        root = parse_markup(path.read_bytes(), str(path))
+        root = parse_markup(text, path)
     except DescriptionError as error:
         raise ArrangementError(path, error.line, error.message) from None
     sheets = [tab for widget in root.walk() if widget.tag == "tabbed_widget" for tab in widget.all("Tab")]

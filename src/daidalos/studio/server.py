@@ -33,6 +33,7 @@ from daidalos.studio.client import Client
 from daidalos.studio.connections import Connections
 from daidalos.studio.files import STATIC
 from daidalos.studio.hub import Changes, Hub
+from daidalos.studio.layouts import MAX_FILE_BYTES, read_layout, write_layout
 from daidalos.studio.limits import HANDSHAKE_S, Turns
 from daidalos.studio.local_users import is_of_another_user
 from daidalos.studio.pages import (
@@ -151,7 +152,7 @@ class StudioServer:
 
     @property
     def remote_url(self) -> str | None:
-        """The page's address for other machines; None where they can not reach it."""
+        """The page's address for other machines; None where they cannot reach it."""
         if all(map(is_loopback, self._hosts)):
             return None
         host = next(host for host in self._hosts if not is_loopback(host))
@@ -244,11 +245,13 @@ class StudioServer:
     async def _serve(self, sockets: list[socket.socket], ready: Future[None]) -> None:
         self._loop = asyncio.get_running_loop()
         self._stopping = asyncio.Event()
-        app = web.Application(middlewares=[self._guard])
+        app = web.Application(middlewares=[self._guard], client_max_size=MAX_FILE_BYTES)
         app[STATIC_KEY] = self._static
         app[ARRANGEMENT_KEY] = self._arrangement
         app.router.add_get("/", self._root)
         app.router.add_get("/arrangement.json", arrangement_of)
+        app.router.add_post("/layouts/read", read_layout)
+        app.router.add_post("/layouts/rviz", write_layout)
         app.router.add_get("/extensions.json", extensions_of)
         app.router.add_get("/extensions/{kind}/{name}/{path:.*}", extension_module)
         app.router.add_get("/{path:.*}", page)

@@ -1,4 +1,4 @@
-"""`rqt_gui`, which the command ``rqt`` starts: the whole studio, or one of its panels."""
+"""`rqt_gui`, which the command ``rqt`` starts: the studio with rqt's plugins to open, or one of its panels."""
 
 from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
@@ -26,7 +26,7 @@ def main() -> int:
     if arguments.list_plugins:
         print("\n".join(_PANELS))
         return 0
-    panel = ""
+    panel = "plugins"
     if arguments.standalone:
         name = arguments.standalone.partition(".")[0].partition("/")[0]
         if name not in _PANELS:

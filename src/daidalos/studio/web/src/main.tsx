@@ -27,11 +27,7 @@ const opening = readOpening(location.search, PANELS);
 function App({ studio }: { studio: Studio }) {
   const dock = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    layout = new Layout(dock.current as HTMLDivElement, studio, opening);
-    const front = readFront(location.search, PANELS);
-    if (front) {
-      layout.open(front);
-    }
+    layout = new Layout(dock.current as HTMLDivElement, studio, opening, readFront(location.search, PANELS));
     studio.openPanel = (id, params, direction) => layout.openById(id, params, direction);
   }, []);
   return (
@@ -71,7 +67,8 @@ function reportMissingPanel(): void {
 }
 
 const worker = new Worker(new URL("./connection/worker.ts", import.meta.url), { type: "module" });
-const arrangement = opening?.details.layout === undefined ? undefined : await fetchArrangement();
+const file = opening?.details.layout;
+const arrangement = file === undefined ? undefined : await fetchArrangement(file);
 const studio = new Studio(worker, arrangement, opening?.details.fixed_frame);
 installTestHooks(studio);
 listenToKeys(attachedWorld);

@@ -4,17 +4,18 @@ import { displaysOf, firstPlot } from "./arrangement";
 
 const NOTHING: Arrangement = {
   fixedFrame: "",
-  images: [],
   followed: "",
   tabs: [],
   span: 0,
   leftOut: [],
+  source: "",
 };
 
 it("asks for displays, with what it leaves open as always", () => {
-  const path = { type: "Path", name: "Way", enabled: false, settings: { topic: "/way", alpha: 0.5 } };
-  const displays = displaysOf({ ...NOTHING, displays: [path, { ...path, type: "Unheard" }] });
-  expect(displays).toHaveLength(1);
+  const path = { origin: "0", type: "Path", name: "Way", enabled: false, settings: { topic: "/way", alpha: 0.5 } };
+  const displays = displaysOf({ ...NOTHING, displays: [path, { ...path, type: "their_plugins/Unheard" }] });
+  expect(displays).toHaveLength(2);
+  expect(displays?.[1]).toMatchObject({ type: "their_plugins/Unheard", origin: "0" });
   expect(displays?.[0]).toMatchObject({ type: "Path", name: "Way", enabled: false });
   expect(displays?.[0]?.settings).toMatchObject({ topic: "/way", alpha: 0.5, width: 3.5 });
   expect(displaysOf(NOTHING)).toBeUndefined();

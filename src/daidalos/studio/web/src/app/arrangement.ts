@@ -2,20 +2,26 @@
 import { DISPLAYS } from "../displays/registry";
 import type { DisplayConfig } from "../displays/settings";
 import type { Arrangement, Plot, Split } from "../generated/arrangement";
+import { openedFile } from "./files";
 
 const ADDRESS = "arrangement.json";
 
-/** Fetch the layout of the file that the server was started with; undefined where there is none or no server. */
-export async function fetchArrangement(): Promise<Arrangement | undefined> {
+/** The layout of a file that was opened in this window, or that the server was started with; undefined: none. */
+export async function fetchArrangement(name: string): Promise<Arrangement | undefined> {
+  const opened = openedFile(name);
+  if (opened) {
+    return opened;
+  }
   const answer = await fetch(ADDRESS).catch(() => undefined);
   return answer?.ok ? ((await answer.json()) as Arrangement) : undefined;
 }
 
 /** The displays of an arrangement, with the default where it has no value. */
 export function displaysOf({ displays }: Arrangement): DisplayConfig[] | undefined {
-  return displays?.flatMap(({ settings, ...display }, i) => {
-    const type = DISPLAYS.find(display.type);
-    return type ? [{ ...display, id: `arranged-${i}`, settings: { ...type.defaults, ...settings } }] : [];
+  return displays?.map(({ settings, ...display }, i) => {
+    // One that the page does not have stays in the list, and in the file when it is saved.
+    const defaults = DISPLAYS.find(display.type)?.defaults ?? {};
+    return { ...display, id: `arranged-${i}`, settings: { ...defaults, ...settings } };
   });
 }
 

@@ -1,6 +1,6 @@
 // The help: keyboard and mouse.
 import { TOOLS } from "../tools/registry";
-import { Icon } from "../ui/icons";
+import { Dialog } from "../ui/dialog";
 import { helpIsOpen } from "./help_state";
 
 const VIEW_KEYS = [
@@ -36,25 +36,16 @@ export function Help() {
   if (!helpIsOpen.value) {
     return null;
   }
-  const close = () => (helpIsOpen.value = false);
   return (
-    <div class="backdrop" onClick={close}>
-      <div class="card" role="dialog" aria-label="Keyboard and mouse" onClick={(event) => event.stopPropagation()}>
-        <header>
-          <h2>Keyboard and mouse</h2>
-          <button class="icon-button" title="Close" onClick={close}>
-            <Icon name="close" />
-          </button>
-        </header>
-        <div class="columns">
-          <Keys title="Tools" rows={TOOLS.map(({ key, title }) => [key, title] as const)} />
-          <Keys title="View" rows={VIEW_KEYS} />
-          <Keys title="Mouse" rows={MOUSE} />
-          <Keys title="Simulation" rows={SIMULATION_KEYS} />
-          <Keys title="Plot" rows={PLOT_MOUSE} />
-        </div>
+    <Dialog title="Keyboard and mouse" onClose={() => (helpIsOpen.value = false)}>
+      <div class="columns">
+        <Keys title="Tools" rows={TOOLS.map(({ key, title }) => [key, title] as const)} />
+        <Keys title="View" rows={VIEW_KEYS} />
+        <Keys title="Mouse" rows={MOUSE} />
+        <Keys title="Simulation" rows={SIMULATION_KEYS} />
+        <Keys title="Plot" rows={PLOT_MOUSE} />
       </div>
-    </div>
+    </Dialog>
   );
 }
 

@@ -12,6 +12,8 @@ import type { BuiltInPanel } from "../panels/panel";
 import { PANELS, type RegisteredPanel } from "../panels/registry";
 import type { PanelContext } from "../contract";
 import type { Arrangement, Plot, Split } from "../generated/arrangement";
+import type { DisplayConfig } from "../displays/settings";
+import { PICTURE_PANELS } from "../displays/picture_display";
 import { allPlots, firstPlot, isSplit } from "./arrangement";
 import { showErrorLine } from "../ui/error_line";
 import type { Opening } from "./opening";
@@ -25,7 +27,9 @@ const NARROW_PX = 1200;
 /** Below this width, that of a phone, all panels lie behind the view. */
 const PHONE_PX = 640;
 const DISPLAYS_NARROW_PX = 250;
-const IMAGE_PX = 460;
+const IMAGE_PX = 300;
+/** What the ids of panels of displays begin with. */
+const PICTURE = "display:";
 
 type Direction = "right" | "below";
 interface Position {
@@ -37,21 +41,27 @@ export class Layout {
   private readonly dock: DockviewApi;
   private readonly key: string;
   private saving = 0;
+  private isRearranging = false;
 
   constructor(
     private readonly element: HTMLElement,
     private readonly studio: Studio,
     private readonly opening?: Opening,
+    private readonly front?: RegisteredPanel,
   ) {
-    // A panel that is opened as a window has a layout of its own.
-    this.key = opening ? `${KEY}.${opening.panel.id}` : KEY;
+    // A panel that is opened as a window has a layout of its own, and so has the page with a panel in front.
+    this.key = opening ? `${KEY}.${opening.panel.id}` : front ? `${KEY}.front.${front.id}` : KEY;
     this.dock = createDockview(element, {
       theme: THEME,
       createComponent: ({ name }) => new PanelHost(name, studio),
       disableFloatingGroups: true,
     });
     this.restore();
+    if (front) {
+      this.open(front);
+    }
     this.dock.onDidLayoutChange(() => this.saveSoon());
+    this.watchPictures();
     addEventListener("pagehide", () => this.save());
   }
 
@@ -74,8 +84,9 @@ export class Layout {
 
   reset(): void {
     forget(this.key);
-    this.dock.clear();
+    this.rearrange(() => this.dock.clear());
     this.arrange();
+    this.showPictures(this.studio.displays.configs.filter(({ type, enabled }) => enabled && type in PICTURE_PANELS));
   }
 
   private restore(): void {
@@ -125,24 +136,59 @@ export class Layout {
     }
   }
 
-  /** What a file of RViz or PlotJuggler has beside its first panel. */
-  private arrangeAsAsked({ images, tabs, span }: Arrangement, main: IDockviewPanel): void {
-    images.forEach((topic, i) => {
-      const position = i === 0 ? ({ referencePanel: main.id, direction: "right" } as const) : undefined;
-      const within = { referencePanel: "image-0", direction: "within" } as const;
-      const title = panelType("image").title;
-      const id = `image-${i}`;
-      const image = this.dock.addPanel({
-        id,
-        component: "image",
-        title,
-        params: { topic },
-        position: position ?? within,
-      });
-      if (i === 0) {
-        image.api.setSize({ width: Math.min(IMAGE_PX, 0.4 * this.element.clientWidth) });
+  /** Keep a panel for each display that is shown in one; closing the panel disables its display. */
+  private watchPictures(): void {
+    const { displays } = this.studio;
+    effect(() => {
+      const wanted = displays.configs.filter(({ type, enabled }) => enabled && type in PICTURE_PANELS);
+      untracked(() => this.showPictures(wanted));
+    });
+    this.dock.onDidRemovePanel(({ id }) => {
+      if (!this.isRearranging && id.startsWith(PICTURE)) {
+        displays.enable(id.slice(PICTURE.length), false);
       }
     });
+  }
+
+  private showPictures(wanted: readonly DisplayConfig[]): void {
+    this.rearrange(() => {
+      for (const panel of this.dock.panels) {
+        if (panel.id.startsWith(PICTURE) && !wanted.some(({ id }) => panel.id === PICTURE + id)) {
+          this.dock.removePanel(panel);
+        }
+      }
+    });
+    for (const { id, type, name } of wanted) {
+      if (!this.dock.getPanel(PICTURE + id)) {
+        this.addPicture(PICTURE + id, PICTURE_PANELS[type] as string, name, { display: id });
+      }
+    }
+  }
+
+  private addPicture(id: string, component: string, title: string, params: Record<string, unknown>): void {
+    const other = this.dock.panels.find((panel) => panel.id.startsWith(PICTURE));
+    const beside = this.dock.getPanel("displays");
+    const position: Position | undefined = other
+      ? { referencePanel: other.id, direction: "within" }
+      : beside && { referencePanel: beside.id, direction: "below" };
+    const panel = this.dock.addPanel({ id, component, title, params, ...(position ? { position } : {}) });
+    if (!other && beside) {
+      panel.api.setSize({ height: Math.min(IMAGE_PX, 0.4 * this.element.clientHeight) });
+    }
+  }
+
+  /** Change panels by the program: what is removed then was not closed by the user. */
+  private rearrange(change: () => void): void {
+    this.isRearranging = true;
+    try {
+      change();
+    } finally {
+      this.isRearranging = false;
+    }
+  }
+
+  /** What a file of PlotJuggler has beside its first panel. */
+  private arrangeAsAsked({ tabs, span }: Arrangement, main: IDockviewPanel): void {
     const [first, ...others] = tabs;
     if (first) {
       const plots = new PlotPlaces(this.dock, span);
@@ -173,10 +219,15 @@ export class Layout {
       scene.api.setActive();
       return;
     }
-    const displays = add("displays", "scene", "left");
+    const isSimulation = this.front?.id === "simulation";
+    const displays = add(isSimulation ? "entities" : "displays", "scene", "left");
+    if (isSimulation) {
+      add("simulation", "scene");
+      add("displays", "entities");
+    }
     if (width < NARROW_PX) {
-      add("topics", "displays");
-      add("message", "displays");
+      add("topics", displays.id);
+      add("message", displays.id);
       displays.api.setSize({ width: DISPLAYS_NARROW_PX });
     } else {
       const topics = add("topics", "scene", "right");
@@ -189,6 +240,11 @@ export class Layout {
     }
     displays.api.setActive();
     scene.api.setActive();
+  }
+
+  /** The panels, to be saved in a file. */
+  get state(): SerializedDockview {
+    return this.dock.toJSON();
   }
 
   private saveSoon(): void {

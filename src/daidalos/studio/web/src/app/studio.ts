@@ -18,8 +18,9 @@ const READ_OUT_S = 0.1;
 
 export interface TimeReading {
   time: number | undefined;
-  /** Simulated seconds per second; undefined where the time is not simulated. */
+  /** Simulated seconds per second; undefined where the time is not simulated, and until it is measured. */
   factor: number | undefined;
+  isSimulated: boolean;
 }
 
 export class Studio implements contract.Studio {
@@ -29,7 +30,7 @@ export class Studio implements contract.Studio {
   readonly fixedFrame: FixedFrame;
   readonly displays: DisplayList;
   readonly assets: Assets;
-  readonly reading = signal<TimeReading>({ time: undefined, factor: undefined });
+  readonly reading = signal<TimeReading>({ time: undefined, factor: undefined, isSimulated: false });
   /** The topic that the message panel shows. */
   readonly selectedTopic = signal("");
   /** Shows a panel; set by the layout. */
@@ -104,10 +105,11 @@ export class Studio implements contract.Studio {
 
   private readClock(): void {
     const time = this.clock.now(performance.now() / 1000);
-    const factor = this.clock.announced ? this.clock.rate : undefined;
+    const isSimulated = this.clock.announced;
+    const factor = isSimulated ? this.clock.measuredRate : undefined;
     const before = this.reading.peek();
-    if (before.time !== time || before.factor !== factor) {
-      this.reading.value = { time, factor };
+    if (before.time !== time || before.factor !== factor || before.isSimulated !== isSimulated) {
+      this.reading.value = { time, factor, isSimulated };
     }
   }
 

@@ -3,6 +3,7 @@ import { Vector3 } from "three";
 import { MapDisplay } from "../displays/types/occupancy_grid";
 import { PointsDisplay } from "../displays/points_display";
 import type { Editor } from "../panels/simulation/editor";
+import { Label } from "../scene/shapes";
 import type { World } from "../scene/world";
 import type { Studio } from "./studio";
 
@@ -25,6 +26,8 @@ export interface PageState {
   maps: Record<string, [number, number]>;
   displays: Record<string, { level: string; text: string }>;
   robotPose: Pose2D | null;
+  /** Whether the 3-D view no longer changes by itself. */
+  settled: boolean;
   tool: string;
   /** The last message that the page published, by topic. */
   published: Record<string, unknown>;
@@ -38,6 +41,8 @@ export interface TestHooks {
   /** Where a point of the fixed frame is in the window, in CSS pixels. */
   project(x: number, y: number, z?: number): { x: number; y: number } | null;
   takeTool(id: string): void;
+  /** The labels of the 3-D view, in pixels of its canvas. */
+  labels(): { text: string; left: number; right: number; top: number; bottom: number }[];
   /** Where a model of the simulation is in the window. */
   simulated(name: string): { x: number; y: number } | null;
   /** Whether the simulator has still to answer what was done in the Simulation panel. */
@@ -98,6 +103,7 @@ export function installTestHooks(studio: Studio): void {
       const box = world.viewport.canvas.getBoundingClientRect();
       return { x: box.left + at.x, y: box.top + at.y };
     },
+    labels: () => labelsIn(world),
     takeTool: (id) => world?.toolbox.selectById(id),
     simulated: (name) => editor?.modelAt(name) ?? null,
     editing: () => editor?.isBusy ?? false,
@@ -121,6 +127,7 @@ function describe(studio: Studio): Omit<PageState, "published" | "framesPerSecon
     displays: {},
     robotPose: robotPose(),
     drawn: world?.viewport.drawn ?? 0,
+    settled: world?.isSettled ?? true,
     tool: world?.toolbox.active.value.id ?? "",
   };
   for (const { id, name } of displays.configs) {
@@ -135,6 +142,20 @@ function describe(studio: Studio): Omit<PageState, "published" | "framesPerSecon
     }
   }
   return state;
+}
+
+function labelsIn(world: World | undefined) {
+  const found: { text: string; left: number; right: number; top: number; bottom: number }[] = [];
+  const { viewport } = world ?? {};
+  viewport?.scene.traverseVisible((object) => {
+    if (object instanceof Label) {
+      const { x, y } = viewport.project(object.position);
+      const height = object.scale.y / viewport.view.metresPerPixel(object.position, viewport.height);
+      const [left, bottom] = [x - object.center.x * height * object.ratio, y + object.center.y * height];
+      found.push({ text: object.text, left, right: left + height * object.ratio, top: bottom - height, bottom });
+    }
+  });
+  return found;
 }
 
 function robotPose(): Pose2D | null {

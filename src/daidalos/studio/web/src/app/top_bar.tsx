@@ -1,11 +1,15 @@
 // The bar at the top: name, state of the connection, robot time, and menus.
+import { useRef } from "preact/hooks";
 import { PANELS } from "../panels/registry";
 import { formatTime } from "../ros/time";
+import { followed } from "../scene/world";
 import { Icon, iconNamed } from "../ui/icons";
 import { Menu, MenuItem, MenuSeparator } from "../ui/menu";
+import { ACCEPTED, openFile, saveLayout, saveRviz } from "./files";
 import { helpIsOpen } from "./help_state";
 import type { Layout } from "./layout";
 import type { Studio } from "./studio";
+import { attachedWorld } from "./test_hooks";
 import { theme, toggleTheme } from "./theme";
 
 const LINK_WORDS = { connecting: "Connecting", connected: "Connected", lost: "Reconnecting" } as const;
@@ -22,6 +26,7 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
       <span class="stretch" />
       <Clock studio={studio} />
       <span class="stretch" />
+      <FileMenu studio={studio} layout={layout} />
       <Menu label="Panels" icon="panel">
         {PANELS.list.map((panel) => (
           <MenuItem key={panel.id} icon={iconNamed(panel.icon, "panel")} onChoose={() => layout().open(panel)}>
@@ -43,6 +48,43 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
         <Icon name={theme.value === "dark" ? "sun" : "moon"} />
       </button>
     </header>
+  );
+}
+
+function FileMenu({ studio, layout }: { studio: Studio; layout: () => Layout }) {
+  const file = useRef<HTMLInputElement>(null);
+  const attempt = (work: Promise<void>) =>
+    void work.catch((error: Error) => studio.session.addStatus({ level: 2, text: error.message }));
+  const save = () => attempt(saveRviz(studio, attachedWorld()?.viewport.view.state(), followed.value));
+  return (
+    <span>
+      <Menu label="File" icon="file" test="file">
+        <MenuItem icon="open" note=".rviz, PlotJuggler, layout" onChoose={() => file.current?.click()}>
+          Open…
+        </MenuItem>
+        <MenuSeparator />
+        <MenuItem icon="save" note="displays and view" onChoose={save}>
+          Save as .rviz
+        </MenuItem>
+        <MenuItem icon="save" note="panels and displays" onChoose={() => saveLayout(layout().state)}>
+          Save layout
+        </MenuItem>
+      </Menu>
+      <input
+        ref={file}
+        type="file"
+        accept={ACCEPTED}
+        hidden
+        data-test="layout-file"
+        onChange={({ currentTarget }) => {
+          const [chosen] = currentTarget.files ?? [];
+          if (chosen) {
+            attempt(openFile(chosen));
+          }
+          currentTarget.value = "";
+        }}
+      />
+    </span>
   );
 }
 
@@ -84,21 +126,22 @@ function LatestStatus({ studio: { session } }: { studio: Studio }) {
 }
 
 function Clock({ studio }: { studio: Studio }) {
-  const { time, factor } = studio.reading.value;
+  const { time, factor, isSimulated } = studio.reading.value;
   if (time === undefined || studio.session.link.value !== "connected") {
     return null;
   }
-  const still = factor !== undefined && factor === 0;
   return (
     <span class="clock">
-      <span class="clock-field" title={factor === undefined ? "Robot time" : "Simulated time"}>
-        <span class="faint">{factor === undefined ? "Time" : "Sim"}</span>
+      <span class="clock-field" title={isSimulated ? "Simulated time" : "Robot time"}>
+        <span class="faint">{isSimulated ? "Sim" : "Time"}</span>
         <span class="figures">{formatTime(time)}</span>
       </span>
-      {factor !== undefined && (
-        <span class="clock-field" title="Simulated seconds per second">
+      {isSimulated && (
+        <span class="clock-field" title="Real-time factor: simulated seconds per second">
           <span class="faint">RTF</span>
-          <span class="figures">{still ? "paused" : `${factor.toFixed(2)}×`}</span>
+          <span class="figures" data-test="rtf">
+            {factor === undefined ? "…" : factor === 0 ? "paused" : `${factor.toFixed(2)}×`}
+          </span>
         </span>
       )}
     </span>

@@ -25,9 +25,9 @@ export interface ClockReading {
 }
 
 export interface Traffic {
-  /** Messages and bytes per second. */
-  rate: number;
-  bandwidth: number;
+  /** Messages and bytes per second; undefined until they were measured over a whole window. */
+  rate: number | undefined;
+  bandwidth: number | undefined;
   total: number;
 }
 

@@ -38,10 +38,11 @@ export class TrafficMeter {
     for (const [topic, count] of this.counts) {
       const first = count.marks[0];
       const span = first ? now - first.time : 0;
-      if (first && span > 0) {
+      if (first) {
         result[topic] = {
-          rate: (count.messages - first.messages) / span,
-          bandwidth: (count.bytes - first.bytes) / span,
+          // A rate over less than the window would jump about.
+          rate: span >= WINDOW_S ? (count.messages - first.messages) / span : undefined,
+          bandwidth: span >= WINDOW_S ? (count.bytes - first.bytes) / span : undefined,
           total: count.total,
         };
       }

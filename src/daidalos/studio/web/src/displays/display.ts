@@ -1,6 +1,6 @@
 // The base of the page's own displays; see contract.ts.
 import { signal } from "@preact/signals";
-import { Group, type Material, type Mesh, type Object3D, type Texture } from "three";
+import { Box3, Group, type Material, type Mesh, type Object3D, type Texture } from "three";
 import type { Session } from "../connection/session";
 import type * as contract from "../contract";
 import type { Settings, Status } from "../contract";
@@ -19,6 +19,7 @@ export interface DisplayContext extends contract.DisplayContext {
 export interface FrameInfo extends contract.FrameInfo {
   readonly view: View;
   /** Of the view, in pixels. */
+  readonly width: number;
   readonly height: number;
 }
 
@@ -44,6 +45,11 @@ export abstract class Display implements contract.Display {
 
   /** Bring the scene up to date; once per drawn frame. */
   update(_frame: FrameInfo): void {}
+
+  /** Where it draws what the first view is to show, in the fixed frame; empty where it has no extent of its own. */
+  bounds(): Box3 {
+    return new Box3();
+  }
 
   dispose(): void {
     disposeTree(this.object);

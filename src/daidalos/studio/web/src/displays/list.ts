@@ -99,8 +99,8 @@ function firstConfigs(): DisplayConfig[] {
   return [
     ...entry("Grid", "Grid"),
     ...entry("Map", "Map", { topic: "/map" }),
-    ...entry("Map", "Global costmap", { topic: "/global_costmap/costmap", scheme: "glow", alpha: 0.35 }),
-    ...entry("Map", "Local costmap", { topic: "/local_costmap/costmap", scheme: "glow", alpha: 0.7 }),
+    ...entry("Map", "Global costmap", { topic: "/global_costmap/costmap", scheme: "costmap", alpha: 0.35 }),
+    ...entry("Map", "Local costmap", { topic: "/local_costmap/costmap", scheme: "costmap", alpha: 0.7 }),
     ...entry("RobotModel", "Robot"),
     ...entry("TF", "TF"),
     ...entry("LaserScan", "Laser scan"),
@@ -114,7 +114,7 @@ function firstConfigs(): DisplayConfig[] {
 
 /** The settings of a discovered topic whose name tells more than its type. */
 function settingsOf(topic: string): Settings {
-  return topic.includes("costmap") && !topic.includes("footprint") ? { scheme: "glow", alpha: 0.5 } : {};
+  return topic.includes("costmap") && !topic.includes("footprint") ? { scheme: "costmap", alpha: 0.5 } : {};
 }
 
 function makeConfig(type: Registered<DisplayType>, settings: Settings, name = type.id, enabled = true): DisplayConfig {

@@ -1,12 +1,14 @@
 // Creates the displays of the configured list, updates and removes them.
 import { effect, untracked } from "@preact/signals";
-import type { Group } from "three";
+import { Box3, type Group } from "three";
 import type { Display, Settings } from "../contract";
-import type { DisplayContext, FrameInfo } from "./display";
+import type { Content } from "../scene/first_view";
+import { Display as PageDisplay, type DisplayContext, type FrameInfo } from "./display";
 import { FailedDisplay } from "./failed_display";
 import type { DisplayList } from "./list";
 import { DISPLAYS } from "./registry";
 import type { DisplayConfig } from "./settings";
+import { RobotModel } from "./types/robot_model";
 
 interface Made {
   display: Display;
@@ -33,6 +35,21 @@ export class DisplayManager {
     for (const [id, { display }] of this.made) {
       this.guard(id, () => display.update(frame));
     }
+  }
+
+  /** What there is to see, and the robots in it. */
+  bounds(): Content {
+    const [all, robot] = [new Box3(), new Box3()];
+    for (const { display } of this.made.values()) {
+      if (display instanceof PageDisplay) {
+        const box = display.bounds();
+        all.union(box);
+        if (display instanceof RobotModel) {
+          robot.union(box);
+        }
+      }
+    }
+    return { all, robot };
   }
 
   /** Create all displays again after time was reset or the server changed; latched messages are received again. */

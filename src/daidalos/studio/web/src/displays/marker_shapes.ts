@@ -28,6 +28,7 @@ import type { Assets } from "../scene/assets";
 import { wrapBox, wrapRound } from "../scene/wrapping";
 import { PointSprites } from "../scene/point_sprites";
 import { arrowGeometry, Label } from "../scene/shapes";
+import { setVeiled } from "../scene/veil";
 
 export interface MarkerContext {
   assets: Assets;
@@ -104,6 +105,7 @@ function solid(geometry: BufferGeometry, marker: Marker): Mesh<BufferGeometry, M
   const object = new Mesh(geometry, material(marker.color));
   object.castShadow = marker.color.a >= 1;
   object.userData.pickable = true;
+  setVeiled(object, marker.color.a < 1);
   return object;
 }
 

@@ -1,5 +1,6 @@
 // The base of laser scans and point clouds: points of one measurement each, kept for the decay time.
 import type { Stamped } from "../contract";
+import { Box3 } from "three";
 import { parseColor, TURBO } from "../scene/colors";
 import { PointSprites } from "../scene/point_sprites";
 import type { Property, Settings } from "../contract";
@@ -61,6 +62,16 @@ export abstract class PointsDisplay<M extends Stamped> extends Display {
     if (this.filter.error) {
       this.report("error", this.filter.error);
     }
+  }
+
+  override bounds(): Box3 {
+    const box = new Box3();
+    for (const { sprites } of this.shots) {
+      if (sprites.visible) {
+        box.union(sprites.bounds());
+      }
+    }
+    return box;
   }
 
   override restyle(settings: Settings): void {

@@ -8,6 +8,8 @@ export interface DisplayConfig {
   readonly name: string;
   readonly enabled: boolean;
   readonly settings: Settings;
+  /** Its place in the file that it was read from. */
+  readonly origin?: string;
 }
 
 export const text = (settings: Settings, key: string): string => String(settings[key] ?? "");

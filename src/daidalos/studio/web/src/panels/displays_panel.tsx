@@ -2,17 +2,19 @@
 import { useState } from "preact/hooks";
 import type { Studio } from "../app/studio";
 import type { Property, Status, Value } from "../contract";
-import { displayFor, DISPLAYS } from "../displays/registry";
+import { DISPLAYS } from "../displays/registry";
 import type { DisplayConfig } from "../displays/settings";
 import { AUTOMATIC } from "../tf/fixed_frame";
 import { Choice, ColorField, NumberField, Toggle } from "../ui/editors";
 import { Icon, iconNamed } from "../ui/icons";
-import { Menu, MenuHeading, MenuItem, MenuSeparator } from "../ui/menu";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import "../styles/displays.css";
 
+import { AddDialog } from "./displays/add_dialog";
+
 function DisplaysPanel({ studio }: PanelProps) {
   const [open, setOpen] = useState<ReadonlySet<string>>(new Set());
+  const [adding, setAdding] = useState(false);
   const toggle = (id: string) => {
     const next = new Set(open);
     if (!next.delete(id)) {
@@ -35,8 +37,12 @@ function DisplaysPanel({ studio }: PanelProps) {
         ))}
       </div>
       <footer class="bar">
-        <AddMenu studio={studio} />
+        <button class="button wide" data-test="add-display" onClick={() => setAdding(true)}>
+          <Icon name="add" />
+          Add display
+        </button>
       </footer>
+      {adding && <AddDialog studio={studio} onClose={() => setAdding(false)} />}
     </div>
   );
 }
@@ -129,7 +135,7 @@ function statusOf(studio: Studio, config: DisplayConfig): Status {
   }
   if (DISPLAYS.find(config.type) === undefined) {
     return DISPLAYS.isComplete.value
-      ? { level: "error", text: `no installed package has a display ${config.type}` }
+      ? { level: "warning", text: `${config.type}: not supported here; it is kept when the configuration is saved` }
       : { level: "idle", text: "loading" };
   }
   const live = studio.displays.live.value.get(config.id);
@@ -197,37 +203,6 @@ function TopicChoice({ studio, config, value, onChange }: TopicChoiceProps) {
   const messages = DISPLAYS.find(config.type)?.messages ?? [];
   const topics = studio.session.topics.value.filter(({ type }) => messages.includes(type));
   return <Choice label="Topic" value={value} options={topics.map(({ name }) => [name, name])} onChange={onChange} />;
-}
-
-function AddMenu({ studio }: { studio: Studio }) {
-  const { displays, session } = studio;
-  const shown = new Set(displays.configs.map(({ settings }) => settings.topic));
-  const topics = session.topics.value.flatMap(({ name, type }) => {
-    const display = displayFor(type);
-    return display && !shown.has(name) ? [{ name, display }] : [];
-  });
-  return (
-    <Menu label="Add display" icon="add" align="left" class="wide">
-      {topics.length > 0 && <MenuHeading>By topic</MenuHeading>}
-      {topics.map(({ name, display }) => (
-        <MenuItem
-          key={name}
-          icon={iconNamed(display.icon, "cube")}
-          note={display.id}
-          onChoose={() => displays.add(display, name)}
-        >
-          {name}
-        </MenuItem>
-      ))}
-      {topics.length > 0 && <MenuSeparator />}
-      <MenuHeading>By type</MenuHeading>
-      {DISPLAYS.list.map((display) => (
-        <MenuItem key={display.id} icon={iconNamed(display.icon, "cube")} onChoose={() => displays.add(display)}>
-          {display.id}
-        </MenuItem>
-      ))}
-    </Menu>
-  );
 }
 
 export default {

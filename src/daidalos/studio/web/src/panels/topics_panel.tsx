@@ -190,11 +190,14 @@ function rate(traffic: Traffic | undefined): string {
     return "";
   }
   const { rate: hertz, total } = traffic;
+  if (hertz === undefined) {
+    return "…";
+  }
   return hertz === 0 ? (total ? "still" : "silent") : `${hertz < 9.95 ? hertz.toFixed(1) : hertz.toFixed(0)} Hz`;
 }
 
 function bandwidth(traffic: Traffic | undefined): string {
-  if (!traffic || traffic.bandwidth === 0) {
+  if (!traffic?.bandwidth) {
     return "";
   }
   const units = ["B/s", "kB/s", "MB/s"];

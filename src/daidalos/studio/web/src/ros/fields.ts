@@ -1,4 +1,4 @@
-// Paths into messages, as plots name them: /odom/pose/pose/position/x, /scan/ranges/0.
+// Paths into messages, as plots name them: /odom/pose/pose/position/x, /scan/ranges/0 or /scan/ranges[0].
 
 /** Split a path into its topic and its fields. */
 export function splitPath(path: string, topics: Iterable<string>): { topic: string; fields: string[] } | undefined {
@@ -8,7 +8,15 @@ export function splitPath(path: string, topics: Iterable<string>): { topic: stri
       topic = name;
     }
   }
-  return topic ? { topic, fields: path.slice(topic.length).split("/").filter(Boolean) } : undefined;
+  return topic ? { topic, fields: fieldsIn(path.slice(topic.length)) } : undefined;
+}
+
+/** The names of fields and the numbers of elements, which may be written as /0 or as [0]. */
+function fieldsIn(path: string): string[] {
+  return path
+    .replace(/\[(\d+)\]/g, "/$1/")
+    .split(/[/.]/)
+    .filter(Boolean);
 }
 
 /** The number at a path; undefined where there is none. */

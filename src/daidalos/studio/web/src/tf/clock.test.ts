@@ -17,6 +17,14 @@ it.each([0.25, 1, 4])("measures a real-time factor of %f", (factor) => {
   expect(clock.now(page + 0.1)).toBeCloseTo(100 + factor * (page + 0.1), 2);
 });
 
+it("tells a reader no factor before it was measured long enough", () => {
+  const clock = new RobotClock();
+  run(clock, 0.5, 1);
+  expect(clock.measuredRate).toBeUndefined();
+  run(clock, 0.5, 3);
+  expect(clock.measuredRate).toBeCloseTo(0.5, 2);
+});
+
 it("draws in the past, steadily, and never goes back", () => {
   const clock = new RobotClock();
   let before = -Infinity;

@@ -20,6 +20,8 @@ interface Mark {
 export class RobotClock {
   /** Robot seconds per second: the real-time factor of a simulation, 1 for a robot. */
   rate = 0;
+  /** The rate for a reader: 0 while time stands still, undefined until it was measured over a whole window. */
+  measuredRate: number | undefined;
   /** Whether the time comes from the server's clock rather than from messages. */
   announced = false;
   private marks: Mark[] = [];
@@ -35,6 +37,7 @@ export class RobotClock {
     const error = expected === undefined ? Infinity : robot - expected;
     if (Math.abs(error) > JUMP_S) {
       this.marks = [];
+      this.measuredRate = undefined;
       this.drawn = -Infinity;
       this.estimate = { page, robot };
     } else {
@@ -64,6 +67,7 @@ export class RobotClock {
       this.estimate = { page, robot: last.robot };
       this.marks = [];
       this.rate = 0;
+      this.measuredRate = 0;
     }
   }
 
@@ -92,6 +96,7 @@ export class RobotClock {
     this.estimate = undefined;
     this.drawn = -Infinity;
     this.rate = 0;
+    this.measuredRate = undefined;
   }
 
   private measureRate(page: number): void {
@@ -102,6 +107,7 @@ export class RobotClock {
       this.rate = this.rate || 1;
     } else {
       this.rate = (last.robot - first.robot) / span;
+      this.measuredRate = span >= 0.8 * RATE_WINDOW_S ? this.rate : this.measuredRate || undefined;
     }
   }
 }

@@ -47,11 +47,12 @@ export function Menu({ label, icon, align = "right", children, onOpen, ...rest }
         class={`button ${rest.class ?? ""}`}
         data-test={rest.test}
         aria-haspopup="menu"
+        aria-label={label}
         aria-expanded={open}
         onClick={() => setOpen(!open)}
       >
         {icon && <Icon name={icon} />}
-        {label}
+        <span class="menu-label">{label}</span>
       </button>
       {open && (
         <div class={`menu-list ${align}`} role="menu" onClick={() => setOpen(false)}>
@@ -82,8 +83,4 @@ export function MenuItem({ icon, onChoose, note, children }: ItemProps) {
 
 export function MenuSeparator() {
   return <div class="menu-separator" role="separator" />;
-}
-
-export function MenuHeading({ children }: { children: ComponentChildren }) {
-  return <div class="menu-heading">{children}</div>;
 }

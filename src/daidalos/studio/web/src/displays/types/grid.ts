@@ -7,7 +7,7 @@ import { flag, number, text } from "../settings";
 
 const MAJOR_EVERY = 5;
 /** Each line is cut into pieces, so that its ends can fade. */
-const PIECES = 24;
+const PIECES = 10;
 
 class Grid extends Display {
   constructor(context: DisplayContext, settings: Settings) {
@@ -86,6 +86,6 @@ export default {
     { key: "alpha", label: "Alpha", kind: "number", min: 0, max: 1, step: 0.05 },
     { key: "fade", label: "Fade out", kind: "toggle" },
   ],
-  defaults: { cells: 40, size: 1, color: "#7d8896", alpha: 0.5, fade: true },
+  defaults: { cells: 40, size: 1, color: "#8e99a6", alpha: 0.5, fade: true },
   create: (context, settings) => new Grid(context, settings),
 } satisfies BuiltInDisplay;

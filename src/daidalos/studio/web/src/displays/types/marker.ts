@@ -1,5 +1,5 @@
 // Marker: shapes that programs put into the scene.
-import { Group } from "three";
+import { Box3, Group } from "three";
 import { Marker, type MarkerArray } from "../../generated/visualization_msgs";
 import { toSeconds } from "../../ros/time";
 import type { Settings } from "../../contract";
@@ -47,6 +47,10 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
     } else if (this.count) {
       this.report("ok", `${this.shown.size} markers`);
     }
+  }
+
+  override bounds(): Box3 {
+    return new Box3().setFromObject(this.object);
   }
 
   private apply(marker: Marker): void {

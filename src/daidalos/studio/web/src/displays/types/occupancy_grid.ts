@@ -1,5 +1,6 @@
 // Map: occupancy grids and costmaps as textures on the ground.
 import {
+  Box3,
   DataTexture,
   LinearMipmapLinearFilter,
   Mesh,
@@ -12,7 +13,7 @@ import {
 } from "three";
 import type { OccupancyGridUpdate } from "../../generated/map_msgs";
 import type { OccupancyGrid } from "../../generated/nav_msgs";
-import { costmapPalette, glowPalette, mapPalette, planPalette, rawPalette, type Palette } from "../../scene/colors";
+import { costmapPalette, mapPalette, rawPalette, type Palette } from "../../scene/colors";
 import { beginsFine } from "../../scene/graphics";
 import { Layer } from "../../scene/layers";
 import type { Settings } from "../../contract";
@@ -96,6 +97,10 @@ export class MapDisplay extends StampedDisplay<OccupancyGrid> {
     }
   }
 
+  override bounds(): Box3 {
+    return this.shown && this.object.visible ? new Box3().setFromObject(this.mesh) : new Box3();
+  }
+
   override dispose(): void {
     this.stopUpdates();
     this.texture?.dispose();
@@ -134,7 +139,7 @@ export class MapDisplay extends StampedDisplay<OccupancyGrid> {
 
   private paint(grid: OccupancyGrid, x: number, y: number, width: number, height: number, data: Int8Array): void {
     this.painted = this.scheme();
-    const palette = new Uint32Array(paletteFor(this.painted, this.context.theme() === "dark").buffer);
+    const palette = new Uint32Array(paletteFor(this.painted).buffer);
     for (let row = 0; row < height; row++) {
       let to = (y + row) * grid.info.width + x;
       for (let from = row * width; from < (row + 1) * width; from++, to++) {
@@ -147,13 +152,12 @@ export class MapDisplay extends StampedDisplay<OccupancyGrid> {
   }
 
   private scheme(): string {
-    const scheme = text(this.settings, "scheme");
-    return scheme === "plan" ? `plan ${this.context.theme()}` : scheme;
+    return text(this.settings, "scheme");
   }
 
   private style(): void {
     const behind = text(this.settings, "layer") === "behind";
-    const costs = ["costmap", "glow"].includes(text(this.settings, "scheme"));
+    const costs = this.scheme() === "costmap";
     this.mesh.renderOrder = behind ? Layer.BEHIND : costs ? Layer.COSTMAP : Layer.MAP;
     this.uniforms.alpha.value = number(this.settings, "alpha");
   }
@@ -169,18 +173,14 @@ function errorIn({ info, data }: OccupancyGrid): string {
   return info.width * info.height === 0 ? "the map is empty" : "";
 }
 
-function paletteFor(scheme: string, dark: boolean): Palette {
+function paletteFor(scheme: string): Palette {
   switch (scheme) {
-    case "map":
-      return mapPalette();
     case "costmap":
       return costmapPalette();
     case "raw":
       return rawPalette();
-    case "glow":
-      return glowPalette();
   }
-  return planPalette(dark);
+  return mapPalette();
 }
 
 export default {
@@ -195,11 +195,9 @@ export default {
       label: "Colour scheme",
       kind: "choice",
       options: [
-        ["plan", "plan"],
-        ["glow", "glow"],
-        ["map", "map (RViz)"],
-        ["costmap", "costmap (RViz)"],
-        ["raw", "raw (RViz)"],
+        ["map", "map"],
+        ["costmap", "costmap"],
+        ["raw", "raw"],
       ],
     },
     { key: "alpha", label: "Alpha", kind: "number", min: 0, max: 1, step: 0.05 },
@@ -213,7 +211,7 @@ export default {
       ],
     },
   ],
-  defaults: { topic: "/map", scheme: "plan", alpha: 1, layer: "normal" },
-  legend: ({ scheme }) => (scheme === "glow" || scheme === "costmap" ? "#f47060" : "var(--text)"),
+  defaults: { topic: "/map", scheme: "map", alpha: 1, layer: "normal" },
+  legend: ({ scheme }) => (scheme === "costmap" ? "#f47060" : "var(--text)"),
   create: (context, settings) => new MapDisplay(context, settings),
 } satisfies BuiltInDisplay;

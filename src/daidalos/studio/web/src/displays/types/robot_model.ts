@@ -1,5 +1,6 @@
 // RobotModel: the robot's links, at their poses by TF.
 import {
+  Box3,
   CapsuleGeometry,
   Color,
   CylinderGeometry,
@@ -15,12 +16,13 @@ import {
 import URDFLoader, { type URDFCollider, type URDFLink, type URDFVisual } from "urdf-loader";
 import type { String as StringMessage } from "../../generated/std_msgs";
 import { plainMaterial } from "../../scene/assets";
+import { isVeil, setVeiled } from "../../scene/veil";
 import type { Settings } from "../../contract";
 import { disposeTree, place, type DisplayContext, type FrameInfo, type BuiltInDisplay } from "../display";
 import { flag, number } from "../settings";
 import { TopicDisplay } from "../topic_display";
 
-class RobotModel extends TopicDisplay<StringMessage> {
+export class RobotModel extends TopicDisplay<StringMessage> {
   private readonly links = new Map<string, Group>();
   private description = "";
   private problems: string[] = [];
@@ -55,6 +57,16 @@ class RobotModel extends TopicDisplay<StringMessage> {
       }
     }
     this.reportMissing(missing, frame.fixed);
+  }
+
+  override bounds(): Box3 {
+    const box = new Box3();
+    for (const link of this.links.values()) {
+      if (link.visible) {
+        box.union(new Box3().setFromObject(link));
+      }
+    }
+    return box;
   }
 
   private reportMissing(missing: string[], fixed: string): void {
@@ -276,7 +288,7 @@ function brightness({ r, g, b }: Color): number {
 }
 
 function styleMesh(object: Object3D, alpha: number, collides: boolean): void {
-  if (!(object instanceof Mesh)) {
+  if (!(object instanceof Mesh) || isVeil(object)) {
     return;
   }
   object.castShadow = !collides;
@@ -294,6 +306,7 @@ function styleMesh(object: Object3D, alpha: number, collides: boolean): void {
       material.color?.set(0xe2a355);
     }
   }
+  setVeiled(object, !collides && alpha < 1);
 }
 
 export default {

@@ -11,6 +11,7 @@ import {
   Vector3,
 } from "three";
 import { Layer } from "../../scene/layers";
+import { placeLabels } from "../../scene/label_layout";
 import { axesGeometry, Label } from "../../scene/shapes";
 import { Transform } from "../../tf/buffer";
 import type { Settings } from "../../contract";
@@ -129,6 +130,20 @@ class TfDisplay extends Display {
       label.position.copy(pose.position);
       label.setHeight(LABEL_PIXELS * frame.view.metresPerPixel(pose.position, frame.height));
     }
+    this.spread(frame);
+  }
+
+  /** Move the labels apart, as they are seen. */
+  private spread({ view, width, height }: FrameInfo): void {
+    const seen = [...this.labels.values()].flatMap((label) => {
+      const at = label.position.clone().project(view.camera);
+      const [x, y] = [((at.x + 1) / 2) * width, ((1 - at.y) / 2) * height];
+      return Math.abs(at.z) <= 1 ? [{ label, x, y, width: LABEL_PIXELS * label.ratio }] : [];
+    });
+    placeLabels(seen, LABEL_PIXELS).forEach(({ left, top }, i) => {
+      const { label, width: wide } = seen[i] as (typeof seen)[number];
+      label.center.set(-left / wide, 1 + top / LABEL_PIXELS);
+    });
   }
 }
 

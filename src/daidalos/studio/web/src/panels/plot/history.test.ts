@@ -24,6 +24,15 @@ it("grows, forgets and stays in order", () => {
   expect(times.every((time, i) => i === 0 || time > (times[i - 1] as number))).toBe(true);
 });
 
+it("keeps every peak beside values that are no numbers", () => {
+  for (const first of [0, 1, 2]) {
+    const history = filled(300, (i) => (i % 3 === first ? NaN : i === 151 ? 50 : i === 149 ? -50 : 0));
+    const { values } = history.decimate(0, 300, 20);
+    const numbers = values.filter((value) => !Number.isNaN(value));
+    expect([Math.min(...numbers), Math.max(...numbers)]).toEqual([first === 2 ? 0 : -50, first === 1 ? 0 : 50]);
+  }
+});
+
 it("keeps every peak when it leaves points out", () => {
   const history = filled(100_000, (i) => (i === 54_321 ? 100 : i === 12_345 ? -100 : Math.sin(i)));
   const { times, values } = history.decimate(0, 100_000, 200);

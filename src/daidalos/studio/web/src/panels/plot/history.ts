@@ -58,8 +58,12 @@ export class History {
       const stop = Math.min(last, i + step);
       let [least, most] = [i, i];
       for (let j = i + 1; j < stop; j++) {
-        least = (this.values[j] as number) < (this.values[least] as number) ? j : least;
-        most = (this.values[j] as number) > (this.values[most] as number) ? j : most;
+        const value = this.values[j] as number;
+        if (!Number.isNaN(value)) {
+          // Written so that any number takes the place of NaN, which is neither greater nor less than anything.
+          least = value >= (this.values[least] as number) ? least : j;
+          most = value <= (this.values[most] as number) ? most : j;
+        }
       }
       for (const at of least === most ? [least] : [Math.min(least, most), Math.max(least, most)]) {
         times.push(this.times[at] as number);
