@@ -1,17 +1,21 @@
-"""Names of extensions that nobody knows, in the parameters of Nav2's servers."""
+"""Names of extensions that nobody knows, in the parameters of Nav2's servers and among components."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 from rclpy.lifecycle import TransitionCallbackReturn
 
+from daidalos.common.extensions import ExtensionError
+from daidalos.nodes.extensions import find_component
 from daidalos.nodes.nav2_behaviors.behavior_server import BehaviorServer
 from daidalos.nodes.nav2_bt_navigator.bt_navigator import BtNavigator
 from daidalos.nodes.nav2_controller.controller_server import ControllerServer
 from daidalos.nodes.nav2_planner.planner_server import PlannerServer
+from daidalos.workspaces.executables import LEFT_OUT
 from nodes.stepped import Stage, stage
 
 __all__ = ["stage"]
@@ -97,3 +101,15 @@ def test_a_tree_with_an_unknown_node_fails_the_transition(
     printed = capfd.readouterr().err
     assert f"{tree}:3: '<Spim>': there is no tree node 'Spim'; did you mean 'Spin'" in printed
     assert "Traceback" not in printed
+
+
+def test_a_component_of_which_the_build_left_out_the_cpp_is_told_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    index = tmp_path / "share" / "ament_index" / "resource_index"
+    for kind, text in (("packages", ""), (LEFT_OUT, "talker_component: 'talker_component' is C++ and was left out\n")):
+        (index / kind).mkdir(parents=True)
+        (index / kind / "cpp_pubsub").write_text(text)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    with pytest.raises(ExtensionError, match="of package 'cpp_pubsub' was left out of the build: talker_component"):
+        find_component("cpp_pubsub", "cpp_pubsub::Talker")

@@ -9,9 +9,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from daidalos.common.extensions import Extension, Kind, find, listing
+from daidalos.common.extensions import Extension, ExtensionError, Kind, find, listing
 from daidalos.common.names import camel_case
-from daidalos.workspaces.executables import BUILT_IN
+from daidalos.workspaces.executables import BUILT_IN, all_left_out
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -62,7 +62,17 @@ def find_component(package: str, plugin: str) -> type[Node]:
     """
     names = components(package)
     leaf = plugin.replace("/", "::").rpartition("::")[2]
-    return find(COMPONENTS, plugin if plugin in names or f"{package}::{leaf}" not in names else f"{package}::{leaf}")
+    try:
+        return find(
+            COMPONENTS, plugin if plugin in names or f"{package}::{leaf}" not in names else f"{package}::{leaf}"
+        )
+    except ExtensionError as error:
+        compiled = [name for name, why in all_left_out(package).items() if " is C++ " in why]
+        if plugin in names or not compiled:
+            raise
+        raise ExtensionError(
+            f"{error}; the C++ of package '{package}' was left out of the build: {', '.join(compiled)}"
+        ) from None
 
 
 def components(package: str) -> list[str]:

@@ -106,13 +106,18 @@ def executable_path(package: str, executable: str) -> Path:
 
 def left_out(package: str, target: str) -> str:
     """Return why the build of a package left out an executable or a library; empty for any other name."""
+    return all_left_out(package).get(target, "")
+
+
+def all_left_out(package: str) -> dict[str, str]:
+    """Return the executables and libraries that the build of a package left out, and why: name -> sentence."""
     from ament_index_python.resources import get_resource
 
     try:
         text, _ = get_resource(LEFT_OUT, package)
     except (LookupError, OSError, ValueError):
-        return ""
-    return next((line.partition(": ")[2] for line in text.splitlines() if line.startswith(f"{target}: ")), "")
+        return {}
+    return {name: sentence for name, _, sentence in (line.partition(": ") for line in text.splitlines())}
 
 
 def is_known(package: str) -> bool:
