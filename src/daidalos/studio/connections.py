@@ -96,7 +96,7 @@ class Connection(asyncio.Protocol):
         self.handler.resume_writing()
 
     def complete(self) -> None:
-        """Note that a request or message was received as a whole."""
+        """Record that a request or message was received as a whole."""
         self._connections.count(-self.unfinished)
         self.unfinished = 0
         self._begun = None

@@ -82,7 +82,7 @@ class Turn:
         self._begin = time.perf_counter()
 
     async def share(self) -> None:
-        """Let others have their turn where this one has lasted `SLICE_S`."""
+        """Hand on to others where this one has lasted `SLICE_S`."""
         used = time.perf_counter() - self._begin
         if used >= SLICE_S:
             await self._turns.give(used)

@@ -48,7 +48,7 @@ class TreeToMsgVisitor(py_trees.visitors.VisitorBase):  # type: ignore[misc]
         self.tree = BehaviourTree()
 
     def initialise(self) -> None:
-        """Begin a message."""
+        """Start a message."""
         self.tree = BehaviourTree()
 
     def run(self, behaviour: Any) -> None:

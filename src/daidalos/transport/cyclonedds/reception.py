@@ -145,7 +145,7 @@ class Paced:
         self._next_ns = 0
 
     def request(self) -> None:
-        """Have the work done at the next `run` that is late enough; from any thread."""
+        """Schedule the work at the next `run` that is late enough; from any thread."""
         self._pending = True
 
     def run(self) -> int:
