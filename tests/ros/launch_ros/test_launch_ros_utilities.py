@@ -1,13 +1,16 @@
 """Names, remappings and parameters: prepared and worked out."""
 
+import io
 import pathlib
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from launch import LaunchContext
+from launch.frontend import Parser
 from launch.substitutions import LaunchConfiguration, SubstitutionFailure, TextSubstitution
 from launch.utilities import perform_substitutions
+from launch_ros.actions.load_composable_nodes import get_composable_node_load_request
 from launch_ros.parameter_descriptions import Parameter, ParameterFile, ParameterValue
 from launch_ros.utilities import (
     add_node_name,
@@ -334,3 +337,26 @@ def test_versions():
 def test_substitution_in_a_path(context):
     [path] = evaluate_parameters(context, normalize_parameters([[WORD, ".yaml"]]))
     assert path == pathlib.Path("text.yaml")
+
+
+def test_a_parameter_given_twice_stays_in_order(context):
+    messages = to_parameters_list(context, "n", "/", [{"a": 1, "b": 2}, {"a": 3}])
+    assert [(message.name, message.value.integer_value) for message in messages] == [("a", 1), ("b", 2), ("a", 3)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<launch><load_composable_node target='c'><composable_node pkg='p' plugin='q' name='n'>"
+        "<extra_arg name='yes' value='true'/><param name='list' value='1, 2' value-sep=', '/>"
+        "</composable_node></load_composable_node></launch>",
+        "launch: [load_composable_node: {target: c, composable_node: [{pkg: p, plugin: q, name: n, "
+        "extra_arg: [{name: 'yes', value: 'true'}], param: [{name: list, value: [1, 2]}]}]}]",
+    ],
+)
+def test_texts_in_markup_are_yaml(context, text):
+    root, parser = Parser.load(io.StringIO(text))
+    [load] = parser.parse_description(root).entities
+    request = get_composable_node_load_request(load._LoadComposableNodes__composable_node_descriptions[0], context)
+    assert [one.value.bool_value for one in request.extra_arguments] == [True]
+    assert [list(one.value.integer_array_value) for one in request.parameters] == [[1, 2]]

@@ -21,6 +21,18 @@ def parse_remapping(entity: Entity, parser: Parser) -> tuple[list[Substitution],
     return rule
 
 
+def parse_extra_argument(entity: Entity, parser: Parser) -> Any:
+    """Read an element `extra_arg`: a name and a text, which is read as YAML."""
+    argument = {tuple(parser.parse_substitution(entity.get_attr("name"))): _text_of(entity, parser)}
+    entity.assert_entity_completely_parsed()
+    return argument
+
+
+def _text_of(entity: Entity, parser: Parser) -> Any:
+    value = entity.get_attr("value", data_type=None)
+    return parser.parse_substitution(value) if isinstance(value, str) else value
+
+
 def parse_parameter(param: Entity, parser: Parser) -> Any:
     """Read an element `param`: a file, or a name with a value or with elements of the same kind.
 
@@ -48,8 +60,7 @@ def parse_parameter(param: Entity, parser: Parser) -> Any:
         raise RuntimeError(f"the parameter '{name}' must have either 'value' or elements 'param', and not both")
     param.assert_entity_completely_parsed()
     if nested is None:
-        parsed = parser.parse_if_substitutions(value)
-        return {parsed_name: parsed if data_type is None else ParameterValue(parsed, value_type=data_type)}
+        return {parsed_name: ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)}
     inner: dict[Any, Any] = {}
     for entry in nested:
         entry_value = parse_parameter(entry, parser)

@@ -100,14 +100,20 @@ class LoadComposableNodes(Action):
         for request in requests:
             if request.node_name:
                 name = prefix_namespace(request.node_namespace or "/", request.node_name)
-                add_node_name(context, name)
-                if get_node_name_count(context, name) > 1:
-                    self.__logger.warning(f"there are now at least two nodes with the name {name} in this launch")
+                self.__note_name(context, name)
         autostarted = [
             request for description, request in zip(wanted, requests, strict=True) if description.autostarts(context)
         ]
         self.__loading = run_with_ros_node(context, self.__load, context, requests)
         return [_bringup(request, context) for request in autostarted] or None
+
+    def __note_name(self, context: LaunchContext, name: str) -> None:
+        add_node_name(context, name)
+        count = get_node_name_count(context, name)
+        if count > 1:
+            self.__logger.warning(
+                f"there are now at least {count} nodes with the name {name} created within this launch context"
+            )
 
     def __full_container_name(self, context: LaunchContext) -> str:
         if isinstance(self.__target_container, list):
@@ -128,6 +134,8 @@ class LoadComposableNodes(Action):
             if response is None:
                 return
             if response.success:
+                if not request.node_name and response.full_node_name:
+                    self.__note_name(context, response.full_node_name)
                 self.__logger.info(f"Loaded node '{response.full_node_name}' in container '{self.__container_name}'")
             else:
                 self.__logger.error(
@@ -169,8 +177,8 @@ def get_composable_node_load_request(composable_node_description: ComposableNode
         request.node_name = perform_substitutions(context, description.node_name)
     own = None if description.node_namespace is None else perform_substitutions(context, description.node_namespace)
     namespace = prefix_namespace(context.launch_configurations.get("ros_namespace"), own)
-    if namespace:
-        request.node_namespace = make_namespace_absolute(namespace)
+    if namespace is not None:
+        request.node_namespace = make_namespace_absolute(namespace) if namespace else "/"
     request.remap_rules = [f"{source}:={destination}" for source, destination in _remappings(description, context)]
     parameters = [*_global_parameters(context), *evaluate_parameters(context, description.parameters or [])]
     request.parameters = to_parameters_list(context, request.node_name, request.node_namespace, parameters)

@@ -64,7 +64,7 @@ class ComposableNode:
     @classmethod
     def parse(cls, parser: Parser, entity: Entity) -> tuple[type[ComposableNode], dict[str, Any]]:
         """Read an element `composable_node`."""
-        from ..actions._node_parsing import parse_remapping
+        from ..actions._node_parsing import parse_extra_argument, parse_remapping
         from ..actions.node import Node
 
         kwargs: dict[str, Any] = {
@@ -75,10 +75,12 @@ class ComposableNode:
         namespace = entity.get_attr("namespace", optional=True)
         if namespace is not None:
             kwargs["namespace"] = parser.parse_substitution(namespace)
-        for tag, argument in (("param", "parameters"), ("extra_arg", "extra_arguments")):
-            found = entity.get_attr(tag, data_type=list[Entity], optional=True)
-            if found is not None:
-                kwargs[argument] = Node.parse_nested_parameters(found, parser)
+        parameters = entity.get_attr("param", data_type=list[Entity], optional=True)
+        if parameters is not None:
+            kwargs["parameters"] = Node.parse_nested_parameters(parameters, parser)
+        extra_arguments = entity.get_attr("extra_arg", data_type=list[Entity], optional=True)
+        if extra_arguments is not None:
+            kwargs["extra_arguments"] = [parse_extra_argument(argument, parser) for argument in extra_arguments]
         remappings = entity.get_attr("remap", data_type=list[Entity], optional=True)
         if remappings is not None:
             kwargs["remappings"] = [parse_remapping(remapping, parser) for remapping in remappings]

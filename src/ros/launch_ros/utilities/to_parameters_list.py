@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def to_parameters_list(
     context: LaunchContext, node_name: str | None, namespace: str | None, evaluated_parameters: Any
 ) -> list[Any]:
-    """Return the messages of a node's parameters; of several for one name the last counts.
+    """Return the messages of a node's parameters in their order; of several for one name the last counts.
 
     Parameters
     ----------
@@ -31,20 +31,19 @@ def to_parameters_list(
     """
     import rclpy.parameter
 
-    values: dict[str, Any] = {}
+    values: list[tuple[str, Any]] = []
     for parameters in evaluated_parameters:
         if isinstance(parameters, pathlib.Path):
-            values.update(_read_file(parameters, node_name, namespace))
+            values += _read_file(parameters, node_name, namespace).items()
         elif isinstance(parameters, Mapping):
-            values.update(parameters)
+            values += parameters.items()
         elif isinstance(parameters, Parameter):
-            name, value = parameters.evaluate(context)
-            values[name] = value
+            values.append(parameters.evaluate(context))
     return [
         rclpy.parameter.Parameter(
             name=name, value=list(value) if isinstance(value, tuple) else value
         ).to_parameter_msg()
-        for name, value in values.items()
+        for name, value in values
     ]
 
 
