@@ -9,6 +9,8 @@ from typing import Any
 
 from sensor_msgs.msg import CameraInfo
 
+from daidalos.common.documents import read_yaml
+
 DEFAULT_URL = "file://${ROS_HOME}/camera_info/${NAME}.yaml"
 """Where calibrations are unless another place is given."""
 
@@ -59,17 +61,15 @@ def loadCalibrationFile(filename: str | Path, cname: str) -> CameraInfo | None:
     Raises
     ------
     ValueError
-        When the file is no calibration; names the file and the field.
+        When the file is no calibration; names the file and the line or field.
     """
-    import yaml
-
     path = Path(filename)
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content = read_yaml(path)
     except FileNotFoundError:
         return None
-    except (yaml.YAMLError, UnicodeDecodeError, OSError) as error:
-        raise ValueError(f"{path}: {error}") from None
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror}") from None
     if not isinstance(content, dict):
         raise ValueError(f"{path}: expected a mapping")
     info = CameraInfo()

@@ -8,6 +8,8 @@ from typing import Any
 
 from ament_index_python.packages import get_package_share_path
 
+from daidalos.common.documents import read_yaml
+
 ParameterValueType = str | int | float | bool | list[str] | list[int] | list[float] | list[bool] | bytes
 
 
@@ -40,15 +42,8 @@ def load_yaml(file_path: Path) -> Any:
     ValueError
         When it is not YAML; names the file and the line.
     """
-    import yaml
-
-    text = load_file(file_path)
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        place = f"{file_path}:{mark.line + 1}" if mark else str(file_path)
-        raise ValueError(f"{place}: {getattr(error, 'problem', None) or error}") from None
+    raise_if_file_not_found(file_path)
+    return read_yaml(file_path)
 
 
 def load_xacro(file_path: Path, mappings: Mapping[str, str] | None = None) -> str:

@@ -9,6 +9,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
 
+from daidalos.common.documents import parse_yaml
 from daidalos.nodes.runner import UserError, program_arguments, run, run_program
 
 _GATHER_S = 10.0
@@ -128,7 +129,7 @@ class TransformMonitor(Node):
         """Return the frames on the way from one to the other."""
         import yaml
 
-        tree = yaml.load(self._buffer.all_frames_as_yaml(), yaml.BaseLoader)  # names stay text
+        tree = parse_yaml(self._buffer.all_frames_as_yaml(), "the frames", yaml.BaseLoader)  # names stay text
 
         def to_root(frame: str) -> list[str]:
             way = [frame]

@@ -10,6 +10,7 @@ from typing import Any
 import yaml
 from rclpy.node import Node
 
+from daidalos.common.documents import parse_yaml
 from daidalos.nodes.runner import UserError, program_arguments, run_program
 from daidalos.nodes.tf2_tools._pdf import to_pdf
 from daidalos.nodes.tf2_tools._svg import to_svg
@@ -67,7 +68,7 @@ def _view(arguments: argparse.Namespace) -> None:
 
 def _frames_of(described: str) -> dict[str, Any]:
     """Return what is known of each frame that has a parent."""
-    frames = yaml.load(described, yaml.BaseLoader)  # names stay text, whatever they look like
+    frames = parse_yaml(described, "the frames", yaml.BaseLoader)  # names stay text, whatever they look like
     return frames if isinstance(frames, dict) else {}
 
 

@@ -41,7 +41,7 @@ class Package(Subject):
 def _version(prefix: Path, name: str) -> str:
     try:
         root = ElementTree.parse(prefix / "share" / name / "package.xml").getroot()
-    except (OSError, ElementTree.ParseError):
+    except (OSError, LookupError, ElementTree.ParseError):
         return ""
     return (root.findtext("version") or "").strip()
 

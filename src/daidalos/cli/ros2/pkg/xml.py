@@ -28,7 +28,7 @@ class XmlVerb(Verb):
             root = ElementTree.fromstring(text)
         except OSError as error:
             raise CliError(f"{path}: {error.strerror}") from None
-        except ElementTree.ParseError as error:
+        except (LookupError, ValueError, ElementTree.ParseError) as error:
             raise CliError(f"{path}: {error}") from None
         if not args.tag:
             print(text.rstrip())
