@@ -116,6 +116,8 @@ def parse_yaml(text: str, source: str | None = None, loader: Any = None, *, alia
         raise DocumentError(TOO_DEEP, source) from None
     except (yaml.YAMLError, ValueError, TypeError, ArithmeticError) as error:  # such as a month 13, a list as a key
         raise DocumentError(" ".join(str(error).split()) or "is not valid YAML", source) from None
+    except (AttributeError, LookupError):  # such as !!int without digits, or !!bool of a word
+        raise DocumentError("a value does not fit its tag", source) from None
 
 
 def _check_events(events: Iterable[Any], yaml: Any, source: str | None, aliases: bool) -> None:
