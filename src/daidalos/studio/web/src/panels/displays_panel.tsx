@@ -111,7 +111,7 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
       </div>
       {open && (
         <div class="properties">
-          <StatusLine status={config.enabled ? status : { level: "idle", text: "disabled" }} />
+          <StatusLine status={status} />
           {type?.properties
             .filter((property) => property.when?.(config.settings) ?? true)
             .map((property) => (
@@ -130,6 +130,9 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
 }
 
 function statusOf(studio: Studio, config: DisplayConfig): Status {
+  if (!config.enabled) {
+    return { level: "idle", text: "disabled" };
+  }
   if (studio.session.link.value !== "connected" && config.settings.topic !== undefined) {
     return { level: "idle", text: "not connected" };
   }
