@@ -423,11 +423,11 @@ def test_two_hundred_models_leave_nothing_behind():
 
     come_and_go(20)
     model = simulation.physics.model
-    before = (model.nbody, model.ngeom, model.nmesh, model.nexclude, model.nu, len(simulation._schedule._entries))
+    before = (model.nbody, model.ngeom, model.nmesh, model.nexclude, model.nu, len(simulation._schedule._queue))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     come_and_go(200)
     model = simulation.physics.model
-    after = (model.nbody, model.ngeom, model.nmesh, model.nexclude, model.nu, len(simulation._schedule._entries))
+    after = (model.nbody, model.ngeom, model.nmesh, model.nexclude, model.nu, len(simulation._schedule._queue))
     assert after == before
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - memory < 20_000  # [KiB]
 

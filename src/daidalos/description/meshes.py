@@ -28,6 +28,7 @@ from daidalos.description.geometry import (
     require_size,
 )
 
+_log = logging.getLogger(__name__)
 _FORMATS = ("stl", "dae", "obj", "gltf", "glb", "ply", "off")
 
 
@@ -121,15 +122,12 @@ def _read(path: Path, submesh: str, _modified: int, where: str) -> TriangleMesh:
     return TriangleMesh(np.asarray(whole.vertices, dtype=np.float64), np.asarray(whole.faces, dtype=np.int32))
 
 
-class _OneLine(logging.Filter):
-    """Filter that makes trimesh's messages one line with the file that is read, instead of a traceback."""
+class _OneLine(logging.Handler):
+    """Handler that logs a message of trimesh as one line with the file that is read, instead of a traceback."""
 
-    def filter(self, record: logging.LogRecord) -> bool:
-        reason = record.exc_info[1] if record.exc_info else None
-        words = " ".join(f"{record.getMessage()}{f': {reason}' if reason else ''}".split())
-        record.msg, record.args = f"mesh {_reading.get()}: {words}", ()
-        record.exc_info = record.exc_text = None
-        return True
+    def emit(self, record: logging.LogRecord) -> None:
+        reason = f": {record.exc_info[1]}" if record.exc_info else ""
+        _log.log(record.levelno, "mesh %s: %s", _reading.get(), " ".join(f"{record.getMessage()}{reason}".split()))
 
 
 _ONE_LINE = _OneLine()
@@ -151,7 +149,9 @@ def read_scene(path: Path, where: str, with_materials: bool = False) -> Any:
     kind = path.suffix.lower().lstrip(".")
     if kind not in _FORMATS:
         raise DescriptionError(f"mesh {path}: {kind or 'no'} format; known are {', '.join(_FORMATS)}", where)
-    logging.getLogger("trimesh").addFilter(_ONE_LINE)
+    log = logging.getLogger("trimesh")
+    log.addHandler(_ONE_LINE)
+    log.propagate = False
     _reading.set(path)
     try:
         scene = trimesh.load_scene(path, file_type=kind, skip_materials=not with_materials)
