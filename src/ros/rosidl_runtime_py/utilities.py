@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import warnings
 from typing import Any
 
 from daidalos.interfaces.message import Action, Message, Service
@@ -11,7 +12,10 @@ _KINDS = {"msg": Message, "srv": Service, "action": Action}
 
 
 def import_message_from_namespaced_type(message_type: Any) -> Any:
-    """Return the class that a `rosidl_parser.definition.NamespacedType` means."""
+    """Return the class that a `rosidl_parser.definition.NamespacedType` means; of a sequence that of its items."""
+    if hasattr(message_type, "value_type"):
+        warnings.warn("a sequence is not a namespaced type: pass its value_type", DeprecationWarning, stacklevel=2)
+        message_type = message_type.value_type
     return _class("/".join(message_type.namespaced_name()))
 
 
