@@ -16,6 +16,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
@@ -36,6 +37,15 @@ WARM = 300
 DEPTH = 1000
 LARGE_DEPTH = 10
 TOPICS, NODES = 1000, 200
+PUBLISHERS = 3000
+LOCALHOST = (
+    "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General><Discovery>"
+    '<ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers>'
+    "</Discovery></Domain></CycloneDDS>"
+)
+"""Configuration that ROS 2 gives DDS where its range is this machine."""
+IMAGES, IMAGE_BYTES, IMAGE_DEPTH = 5, 16_000_000, 5
+TIMER_S, TIMER_HZ = 8.0, 10
 REPEATS = 3
 TIMEOUT_S = 30.0
 
@@ -76,6 +86,9 @@ def measure_wire() -> dict[str, float]:
         times = sorted(round_trips())
     figures["round_trip_p50_us"] = times[len(times) // 2]
     figures["round_trip_p99_us"] = times[len(times) * 99 // 100]
+    figures |= measure_ends() | measure_timer() | {"3000_publishers_s": measure_publishers()}
+    if os.environ["RMW_IMPLEMENTATION"] == MIDDLEWARES["dds"]:
+        figures |= measure_images()
     with other("crowd"):
         begin = time.perf_counter()
         with session() as (ours, _):
@@ -83,6 +96,66 @@ def measure_wire() -> dict[str, float]:
             figures["graph_of_1000_topics_s"] = time.perf_counter() - begin
             figures["graph_of_1000_topics_missing"] = TOPICS - len(ours.graph.endpoints(EndpointKind.PUBLISHER))
     return figures
+
+
+def measure_ends() -> dict[str, float]:
+    """Return what it takes to open and to close a session, in ms."""
+    begin = time.perf_counter()
+    made = Session(make_backend(read_environment()))
+    opened = time.perf_counter()
+    made.close()
+    return {"start_ms": (opened - begin) * 1e3, "end_ms": (time.perf_counter() - opened) * 1e3}
+
+
+def measure_timer() -> dict[str, float]:
+    """Return what a publisher at 10 Hz costs while another process listens, in percent of a core."""
+    with other("count-small"), session() as (ours, node):
+        publisher = ours.create_publisher(node, "/stream", String, Qos())
+        ours.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
+        used, end = time.process_time(), time.perf_counter() + TIMER_S
+        while time.perf_counter() < end:
+            publisher.publish(String(data="x"))
+            time.sleep(1 / TIMER_HZ)
+        return {"10_hz_cpu_percent": 100 * (time.process_time() - used) / TIMER_S}
+
+
+def measure_publishers() -> float:
+    """Return how long it takes to create many publishers while another process watches."""
+    with other("echo"), session() as (ours, node):
+        begin = time.perf_counter()
+        kept = [ours.create_publisher(node, f"/topic{number}", String, Qos()) for number in range(PUBLISHERS)]
+        seconds = time.perf_counter() - begin
+        assert kept
+        return seconds
+
+
+def measure_images() -> dict[str, float]:
+    """Send large images, as many as the depth, to a process that behaves as ROS 2's middleware."""
+    root = Path(__file__).parents[1]
+    peer = subprocess.Popen(
+        [sys.executable, "-P", str(root / "tests" / "transport" / "cyclonedds" / "jazzy_peer.py"), "images"],
+        stdout=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(root / "tests"), *sys.path]), "CYCLONEDDS_URI": LOCALHOST},
+    )
+    assert peer.stdout is not None
+    try:
+        assert peer.stdout.readline() == "ready\n"
+        with session() as (ours, node):
+            publisher = ours.create_publisher(node, "/image", Image, Qos(depth=IMAGE_DEPTH))
+            ours.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
+            message, begin = Image(data=bytes(IMAGE_BYTES)), time.perf_counter()
+            for _ in range(IMAGES):
+                publisher.publish(message)
+            timeout = threading.Timer(TIMEOUT_S, peer.terminate)
+            timeout.start()
+            received = sum(1 for _ in zip(range(IMAGES), peer.stdout, strict=False))
+            seconds = time.perf_counter() - begin
+            timeout.cancel()
+    finally:
+        peer.kill()
+        peer.wait()
+    return {"16_mb_images_s": seconds, "16_mb_images_lost": IMAGES - received}
 
 
 @contextmanager
