@@ -56,6 +56,9 @@ class Lock:
 
     def _wait(self, timeout: float) -> bool:
         scheduler = self.scheduler
+        if scheduler.is_foreign:
+            scheduler.wait_outside(lambda: self.acquire(blocking=False))
+            return True
         wait = Wait(scheduler.running(), "a lock", self)
         if self._waiting is None:
             self._waiting = deque()

@@ -15,7 +15,7 @@ import sys
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
-from typing import Any
+from typing import Any, ClassVar
 from weakref import WeakSet
 
 from daidalos.lockstep.patching import Randomness
@@ -36,6 +36,9 @@ _ONCE_A_PROCESS: dict[str, dict[str, Callable[[], Any]]] = {
     "daidalos.nodes.runner": {"_failed": threading.Event},
 }
 """Variables of modules that are a process's own, with functions that create their first values."""
+
+
+_real_chdir = os.chdir
 
 
 class Terminated(BaseException):
@@ -93,6 +96,8 @@ class Program(Owner):
         Handlers of signals by number.
     """
 
+    _present_folder: ClassVar[str] = ""
+
     def __init__(
         self,
         scheduler: Scheduler,
@@ -112,7 +117,7 @@ class Program(Owner):
         self.handlers: dict[int, Any] = {signal.SIGINT: signal.default_int_handler}
         self.main_thread: Any = threading.main_thread()
         self._body = body
-        self._folder = folder or os.getcwd()
+        self._folder = os.path.abspath(folder or os.getcwd())
         self._environ = _environment(os.environ if environ is None else environ)
         self._pending: list[int] = []
         self._main: Thread | None = None
@@ -231,8 +236,9 @@ class Program(Owner):
                 setattr(loaded, variable, value)
         os.environ._data = self._environ  # type: ignore[attr-defined]
         sys.modules["__main__"] = self._module
-        if os.getcwd() != self._folder:
-            os.chdir(self._folder)
+        if Program._present_folder != self._folder:
+            _real_chdir(self._folder)
+            Program._present_folder = self._folder
         self.randomness.install_numpy()
         self._swap_log_output(install=True)
 
@@ -243,7 +249,7 @@ class Program(Owner):
             if loaded is not None:
                 self._state[module, variable] = getattr(loaded, variable)
         self._module = sys.modules["__main__"]
-        self._folder = os.getcwd()
+        self._folder = Program._present_folder
         self._swap_log_output(install=False)
 
     def _swap_log_output(self, *, install: bool) -> None:
@@ -258,6 +264,12 @@ class Program(Owner):
             output.to_file = False  # the same run would write the same names
             self._log_output = output.__dict__
         module.OUTPUT.__dict__ = self._log_output
+
+
+def change_folder(path: Any) -> None:
+    """Change the working folder of the program that runs."""
+    _real_chdir(path)
+    Program._present_folder = os.getcwd()
 
 
 def _environment(variables: Mapping[str, str]) -> dict[Any, Any]:

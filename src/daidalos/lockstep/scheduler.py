@@ -7,9 +7,11 @@ earliest deadline. Computing takes no time: the clock stands still while a threa
 
 from __future__ import annotations
 
+import _thread
 import asyncio
 import heapq
 import itertools
+import time
 import traceback
 from collections import deque
 from collections.abc import Callable
@@ -31,6 +33,11 @@ MAX_READS = 2000
 
 READING_NS = 100_000
 """Time [ns] by which the clock advances when a thread has read it too often."""
+
+
+_real_ident = _thread.get_ident
+_real_sleep = time.sleep
+_POLL_S = 0.0005
 
 
 class LockstepError(UserError):
@@ -169,6 +176,7 @@ class Scheduler:
         self._at_instant = 0
         self._busy: dict[str, int] = {}
         self._stopped = False
+        self._ident = _real_ident()
         self._abandoned: list[Thread] = []
 
     def next_number(self) -> int:
@@ -245,9 +253,19 @@ class Scheduler:
         thread = self.current
         if thread is not None:
             thread.reads += 1
-            if thread.reads > MAX_READS:
+            if thread.reads > MAX_READS and not self.is_foreign:
                 self.sleep_until(self.now_ns + READING_NS)
         return self.now_ns
+
+    @property
+    def is_foreign(self) -> bool:
+        """Whether a real thread beside the run asks; the clean-up of objects may run in one."""
+        return _real_ident() != self._ident
+
+    def wait_outside(self, condition: Callable[[], bool]) -> None:
+        """Wait for a condition in a real thread beside the run."""
+        while not condition():
+            _real_sleep(_POLL_S)
 
     def running(self) -> Thread:
         """Return the thread that runs.

@@ -12,7 +12,7 @@ from launch import _process
 
 from daidalos.lockstep.commands import body_of
 from daidalos.lockstep.launched import ProgramStarter
-from daidalos.lockstep.programs import Program
+from daidalos.lockstep.programs import Program, change_folder
 from daidalos.lockstep.run import Run
 from daidalos.lockstep.scheduler import LockstepError
 
@@ -37,6 +37,7 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     """
     _process.start_process = ProgramStarter(run.create)
     system: Any = os
+    system.chdir = change_folder
     system.execve = system.execvpe = _replace_program
     system.execv = system.execvp = lambda path, argv: _replace_program(path, argv, os.environ)
     program = _program(run, command)
