@@ -25,6 +25,14 @@ it("tells a reader no factor before it was measured long enough", () => {
   expect(clock.measuredRate).toBeCloseTo(0.5, 2);
 });
 
+it("keeps the factor when the page was busy for a while", () => {
+  const clock = new RobotClock();
+  run(clock, 1, 4);
+  clock.add(100 + 5.4, 5.4, true);
+  expect(clock.now(5.4)).toBeCloseTo(105.4);
+  expect(clock.measuredRate).toBeCloseTo(1, 2);
+});
+
 it("draws in the past, steadily, and never goes back", () => {
   const clock = new RobotClock();
   let before = -Infinity;

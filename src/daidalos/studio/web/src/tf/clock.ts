@@ -36,8 +36,10 @@ export class RobotClock {
     const expected = this.now(page);
     const error = expected === undefined ? Infinity : robot - expected;
     if (Math.abs(error) > JUMP_S) {
-      this.marks = [];
-      this.measuredRate = undefined;
+      if (!this.wasBusy(robot, page)) {
+        this.marks = [];
+        this.measuredRate = undefined;
+      }
       this.drawn = -Infinity;
       this.estimate = { page, robot };
     } else {
@@ -97,6 +99,12 @@ export class RobotClock {
     this.drawn = -Infinity;
     this.rate = 0;
     this.measuredRate = undefined;
+  }
+
+  /** Whether a jump is no new time, but what a page that was busy for a while did not hear. */
+  private wasBusy(robot: number, page: number): boolean {
+    const last = this.marks.at(-1);
+    return last !== undefined && Math.abs(robot - last.robot - (page - last.page) * this.rate) <= JUMP_S;
   }
 
   private measureRate(page: number): void {
