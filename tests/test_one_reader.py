@@ -7,6 +7,8 @@ from pathlib import Path
 from places import REPOSITORY
 
 _READER = "daidalos/common/documents.py"
+_ALLOWED = {"daidalos/studio/rviz_writing.py"}
+"""Files that take the nodes of a text that was read within the limits before."""
 _READING = {"load", "load_all", "safe_load", "safe_load_all", "full_load", "unsafe_load", "compose", "parse", "scan"}
 
 
@@ -23,6 +25,7 @@ def uses(path: Path) -> Iterator[str]:
 def test_nothing_else_reads_yaml() -> None:
     root = REPOSITORY / "src"
     files = [path for package in ("daidalos", "ros") for path in (root / package).rglob("*.py")]
-    found = [line for path in files if not path.as_posix().endswith(_READER) for line in uses(path)]
+    others = [path for path in files if path.relative_to(root).as_posix() not in {_READER, *_ALLOWED}]
+    found = [line for path in others for line in uses(path)]
     assert found == []
     assert list(uses(root / _READER))
