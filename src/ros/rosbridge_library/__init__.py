@@ -1,0 +1,1 @@
+"""Messages as JSON, in the way of rosbridge: `internal.message_conversion` and `internal.ros_loader`."""

@@ -1,0 +1,1 @@
+"""Conversion of messages, and their classes by name."""
