@@ -17,6 +17,8 @@ _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
 _HEXADECIMAL = re.compile(r"[+-]?0[xX][0-9a-fA-F]+")
+_MAX_EXPANSION = 100_000
+"""Characters by which entities may make the text of a document longer than the document."""
 _DECLARATION = re.compile(rb"((?:<!--.*?-->\s*)*)(<\?xml\b(\s+version\b)?[^>\n]*\?>)", re.DOTALL)
 
 
@@ -265,6 +267,7 @@ class _TreeBuilder:
         self._source = source
         self._skipped_lines = skipped_lines
         self._stack: list[Element] = []
+        self._expanded = 0
         self._root: Element | None = None
         self._parser = expat.ParserCreate(encoding)  # which limits what entities expand to
         self._parser.buffer_text = True
@@ -273,6 +276,7 @@ class _TreeBuilder:
         self._parser.CharacterDataHandler = self._characters
 
     def build(self, body: bytes) -> Element:
+        self._expanded = len(body) + _MAX_EXPANSION
         try:
             self._parser.Parse(body, True)
         except LookupError as problem:  # an encoding that Python does not know
@@ -300,5 +304,9 @@ class _TreeBuilder:
         self._stack.pop()
 
     def _characters(self, data: str) -> None:
+        self._expanded -= len(data)
+        if self._expanded < 0:
+            line = self._parser.CurrentLineNumber + self._skipped_lines
+            raise DescriptionError("the entities expand to too much text", self._source, line)
         if self._stack:
             self._stack[-1].text += data
