@@ -1,13 +1,19 @@
+from argparse import ArgumentParser
+
 import pytest
+import rclpy
 from nav_msgs.msg import Odometry
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
 
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.topic.bw import BandwidthMeter
 from daidalos.cli.ros2.topic.delay import DelayMeter
-from daidalos.cli.ros2.topic.echo import Losses
+from daidalos.cli.ros2.topic.echo import EchoVerb, Losses
 from daidalos.cli.ros2.topic.hz import Rate, RateMeter, table
-from daidalos.cli.ros2.topics import Field, filter_function
+from daidalos.cli.ros2.topics import Field, filter_function, subscribe
 
 
 def test_fields_by_path():
@@ -44,6 +50,36 @@ def test_filters():
         filter_function("m.")
     with pytest.raises(CliError, match="Failed to evaluate the filter expression"):
         filter_function("m.nope")(LaserScan())
+
+
+def test_a_latched_topic_whose_publisher_comes_after_its_listener_is_heard(monkeypatch):
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_daidalos_inprocess")
+    parser = ArgumentParser()
+    EchoVerb().add_arguments(parser, "ros2")
+    with rclpy.Context() as context:
+        executor = SingleThreadedExecutor(context=context)
+        listener, talker = (rclpy.create_node(name, context=context) for name in ("listener", "talker"))
+        executor.add_node(listener)
+        talker.create_subscription(String, "latched", lambda message: None, 10)  # the topic is known, but not its QoS
+        heard = []
+        subscribe(
+            listener,
+            parser.parse_args(["/latched"]),
+            "/latched",
+            String,
+            lambda message, info: heard.append(message.data),
+        )
+        publisher = talker.create_publisher(
+            String, "latched", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        )
+        publisher.publish(String(data="before anybody listens"))
+        for _ in range(4):
+            executor.spin_once(timeout_sec=1.0)
+        assert "before anybody listens" in heard
+        assert len(list(listener.subscriptions)) == 1
+        assert not list(listener.guards)
+        listener.destroy_node()
+        talker.destroy_node()
 
 
 def test_rate_of_regular_and_irregular_messages():

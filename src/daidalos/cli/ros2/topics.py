@@ -17,6 +17,8 @@ from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+    from rclpy.qos import QoSProfile
+    from rclpy.subscription import Subscription
     from rclpy.task import Future
 
 
@@ -113,12 +115,36 @@ def filter_function(expression: str) -> Callable[[Any], bool]:
 def subscribe(
     node: Node, args: Namespace, topic: str, message_type: Any, on_message: Callable[..., Any], *, raw: bool = False
 ) -> None:
-    """Pass every message of a topic to a function, with the requested QoS or the publishers'."""
+    """Pass every message of a topic to a function, with the requested QoS or that of the first publishers."""
     qos = requested_qos(args)
-    if qos is None:
-        name = node.resolve_topic_name(topic)
-        qos = qos_for_publishers(node.handle.graph.endpoints(EndpointKind.PUBLISHER, name=name))
-    node.create_subscription(message_type, topic, on_message, qos, raw=raw)
+    graph, name = node.handle.graph, node.resolve_topic_name(topic)
+    publishers = [] if qos is not None else graph.endpoints(EndpointKind.PUBLISHER, name=name)
+    chosen = qos or qos_for_publishers(publishers)
+    subscription = node.create_subscription(message_type, topic, on_message, chosen, raw=raw)
+    if qos is None and not publishers:
+        _adapt_to_first_publisher(node, subscription, name, chosen)
+
+
+def _adapt_to_first_publisher(node: Node, subscription: Subscription, name: str, chosen: QoSProfile) -> None:
+    """Replace a subscription where the topic's first publisher, once it is there, offers another QoS."""
+    graph = node.handle.graph
+
+    def adapt() -> None:
+        publishers = graph.endpoints(EndpointKind.PUBLISHER, name=name)
+        if not publishers or condition not in node.guards:
+            return
+        stop()
+        node.destroy_guard_condition(condition)
+        qos = qos_for_publishers(publishers)
+        if qos != chosen:
+            node.destroy_subscription(subscription)
+            node.create_subscription(
+                subscription.msg_type, subscription.topic, subscription.callback, qos, raw=subscription.raw
+            )
+
+    condition = node.create_guard_condition(adapt)
+    stop = graph.listen(lambda added, what: condition.trigger())
+    condition.trigger()  # it may have come meanwhile
 
 
 def spin(node: Node, done: Future | None = None, timeout_s: float | None = None) -> None:
