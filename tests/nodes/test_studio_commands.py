@@ -83,7 +83,10 @@ def test_a_browser_is_opened_where_there_is_one(domain: int, tmp_path: Path) -> 
         (("rviz2", "rviz2", "-d", "missing.rviz"), "there is no file 'missing.rviz'"),
         (("rviz2", "rviz2", "-d", __file__), "test_studio_commands.py:1: not YAML"),
         (("plotjuggler", "plotjuggler", "-l", RVIZ), "turtle_rviz.rviz:1: not well-formed XML"),
-        (("rqt", "rqt", "-s", "rqt_coffee"), "there is no plugin 'rqt_coffee'; there are: rqt_console, rqt_graph"),
+        (
+            ("rqt", "rqt", "-s", "rqt_coffee"),
+            "there is no plugin 'rqt_coffee'; there are: rqt_console, rqt_controller_manager, rqt_graph",
+        ),
     ],
 )
 def test_mistakes_are_named(words: tuple[str, ...], error: str, domain: int) -> None:

@@ -371,7 +371,7 @@ class PlayerNode(Node):
     # The clock, events and services.
 
     def _tick(self) -> None:
-        if self._playing:
+        if self._state == RUNNING:  # before, the bag's time has not begun
             self._publish_clock(self._clock_of_bag.now(_steady()))
 
     def _publish_clock(self, time_ns: int) -> None:

@@ -5,7 +5,6 @@ import re
 import shlex
 import sys
 import textwrap
-import types
 from pathlib import Path
 
 import pytest
@@ -34,9 +33,10 @@ print('RAN ' + json.dumps([sys.argv[1], arguments[:end], remaps, parameters]))
 @pytest.fixture
 def ran(monkeypatch, capsys, run_text):
     """Run the text of a launch file; return what each node was given: arguments, remappings, parameters."""
-    module = types.ModuleType("daidalos.workspaces.executables")
-    module.find_executable = lambda package, executable: [sys.executable, "-c", SHOW, f"{package}/{executable}"]
-    monkeypatch.setitem(sys.modules, "daidalos.workspaces.executables", module)
+    monkeypatch.setattr(
+        "daidalos.workspaces.executables.find_executable",
+        lambda package, executable: [sys.executable, "-c", SHOW, f"{package}/{executable}"],
+    )
     monkeypatch.setenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "screen")
 
     def run(text, **configurations):
