@@ -8,6 +8,7 @@ import os
 import shutil
 import signal
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -74,6 +75,24 @@ def reporting_command(command: Sequence[str]) -> list[str]:
     if path.is_absolute() and path.parent in _folders(path.parent.name) and is_script_of_this_python(path):
         return [sys.executable, _RUN_SCRIPT, *command]
     return list(command)
+
+
+def is_starting_something(since_s: float) -> bool:
+    """Return whether an executable of a package was started in this domain within so many seconds."""
+    import psutil
+
+    domain = os.environ.get("ROS_DOMAIN_ID", "")
+    for process in psutil.process_iter(["cmdline", "create_time"]):
+        with contextlib.suppress(psutil.Error, OSError):
+            words = process.info["cmdline"] or ()
+            is_new = process.info["create_time"] > time.time() - since_s
+            if (
+                is_new
+                and (_START in words or _RUN_SCRIPT in words)
+                and process.environ().get("ROS_DOMAIN_ID", "") == domain
+            ):
+                return True
+    return False
 
 
 @contextlib.contextmanager

@@ -6,8 +6,9 @@ import pytest
 import yaml
 
 from daidalos.cli.ros2.param.dump import nested
+from daidalos.workspaces.executables import built_in_command
 
-from .commands import ROS2, ros2
+from .commands import ros2
 
 NODE = """
 import rclpy
@@ -58,12 +59,13 @@ def test_what_is_dumped_can_be_loaded(env, talker, tmp_path):
     assert (result.status, result.err) == (1, "nowhere/lab__talker.yaml: No such file or directory\n")
 
 
-def test_a_node_that_is_starting_is_waited_for(env, beside):
-    words = [*ROS2, "param", "get", "/lab/talker", "speed"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=env) as asking:
-        assert asking.stderr.readline() == "waiting for '/lab/talker', at most 10 s\n"
-        beside(NODE)
-        assert asking.communicate(timeout=60)[0] == "Double value is: 1.0\n"
+def test_a_node_that_is_starting_is_waited_for(env):
+    with subprocess.Popen(built_in_command("demo_nodes_py", "talker"), stderr=subprocess.DEVNULL, env=env) as node:
+        try:
+            got = ros2("param", "get", "/talker", "use_sim_time", env=env)
+            assert (got.status, got.out) == (0, "Boolean value is: False\n")
+        finally:
+            node.kill()
 
 
 def test_lists_are_filtered(env, talker):

@@ -29,6 +29,7 @@ DIFFERENT = {
     "topic echo --once --qos-durability transient_local /tf_static": "best effort gets what was latched, too",
     "topic pub --once /new std_msgs/msg/Int8 data: 300": "fails at once",
     "topic pub --once /cmd_vel geometry_msgs/msg/Twist {linear: [}": "says where the YAML is wrong",
+    "topic type --no-daemon /nothing": "names the topic",
     "action info /lab/fibonacci": "names the server",
     "action info -t /lab/fibonacci": "names the server",
     "action find example_interfaces/action/Fibonacci": "has the verb",

@@ -68,13 +68,16 @@ def wait_for_name(graph: Graph, name: str, known: Callable[[], Collection[str]],
     known
         Returns the known names.
     limit_s
-        How long to wait [s]; None for `START_S`, which is said, or for a part of it where a near name is known, as then
-        the name is rather misspelt.
+        How long to wait [s]; None for `START_S`, which is said, where a program has just been started, and for a part
+        of it where none has, or a near name is known: then the name is rather misspelt.
     """
     if name in known():
         return True
     if limit_s is None:
-        limit_s = MISSPELT_S if near(name, known()) else START_S
+        from daidalos.workspaces.executables import is_starting_something
+
+        may_come = not near(name, known()) and is_starting_something(START_S)
+        limit_s = START_S if may_come else MISSPELT_S
         if limit_s == START_S:
             print(f"waiting for '{name}', at most {START_S:g} s", file=sys.stderr, flush=True)
     return graph.wait_for(lambda: name in known(), limit_s)

@@ -109,4 +109,4 @@ def _near_fields(error: Exception) -> str:
     if colon and field in holder.get_fields_and_field_types():
         return f"\nDid you mean '{field}: {value}'? YAML wants a space after the colon"
     known = holder.get_fields_and_field_types()
-    return did_you_mean(error.name, known) or f"\nIts fields are: {', '.join(known) or 'none'}"  # type: ignore[attr-defined]
+    return did_you_mean(error.name, known)  # type: ignore[attr-defined]

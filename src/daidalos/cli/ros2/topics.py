@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import sys
 from argparse import Namespace
@@ -13,7 +14,7 @@ from daidalos.cli.ros2.graph import topics, types_of
 from daidalos.cli.ros2.interfaces import message_class
 from daidalos.cli.ros2.qos import qos_for_publishers, requested_qos
 from daidalos.common.suggestions import did_you_mean, hint_line
-from daidalos.transport.graph import EndpointKind
+from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -127,6 +128,8 @@ def subscribe(
 
 def _adapt_to_first_publisher(node: Node, subscription: Subscription, name: str, chosen: QoSProfile) -> None:
     """Replace a subscription where the topic's first publisher, once it is there, offers another QoS."""
+    from rclpy.handle import InvalidHandle
+
     graph = node.handle.graph
 
     def adapt() -> None:
@@ -142,8 +145,12 @@ def _adapt_to_first_publisher(node: Node, subscription: Subscription, name: str,
                 subscription.msg_type, subscription.topic, subscription.callback, qos, raw=subscription.raw
             )
 
+    def look(added: bool, what: NodeInfo | EndpointInfo) -> None:
+        with contextlib.suppress(InvalidHandle):  # the node is being destroyed
+            condition.trigger()
+
     condition = node.create_guard_condition(adapt)
-    stop = graph.listen(lambda added, what: condition.trigger())
+    stop = graph.listen(look)
     condition.trigger()  # it may have come meanwhile
 
 
