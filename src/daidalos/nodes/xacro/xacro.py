@@ -91,7 +91,7 @@ def _located(said: str) -> str:
     try:
         load_xacro(file, options.mappings, package_share)
     except DescriptionError as error:
-        way = [line for line in said.splitlines() if line.startswith(_WAY)]
+        way = [line for line in said.splitlines() if line.startswith(_WAY) and line not in str(error)]
         more = [f"... and {len(way) - _SHOWN} more"] if len(way) > _SHOWN else []
         return "\n".join([f"error: {error}", *way[:_SHOWN], *more]) + "\n"
     return said  # such as an undefined M_PI, which other tools define
