@@ -149,6 +149,6 @@ def test_what_trimesh_complains_of_is_one_line_with_the_file(tmp_path, caplog):
     (tmp_path / "broken.png").write_text("nothing")
     path.write_text(text.replace("element vertex", "comment TextureFile broken.png\nelement vertex"))
     read_scene(path, "w.sdf:1", with_materials=True)
-    (record,) = caplog.records
+    (record,) = (one for one in caplog.records if one.name == "daidalos.description.meshes")
     assert record.getMessage().startswith(f"mesh {path}: unable to load image!: cannot identify image file")
     assert record.exc_info is None

@@ -40,6 +40,8 @@ class Parser(BaseParser):
         if not isinstance(tree, dict) or len(tree) != 1 or not isinstance(next(iter(tree)), str):
             raise LaunchFileError(filename, None, "Expected one root element: `launch:` with a list below it")
         type_name, element = next(iter(tree.items()))
+        if not isinstance(element, list | dict):
+            raise LaunchFileError(filename, None, f"Expected a list below `{type_name}:`, got {type(element).__name__}")
         return Entity(element, type_name), cls()
 
     @classmethod

@@ -72,7 +72,8 @@ def test_dijkstra_and_a_star_find_ways_of_the_same_cost(seed, allow_unknown):
             paths.append(None)
     assert (paths[0] is None) == (paths[1] is None)
     if paths[0] is not None:
-        assert path_length(paths[1]) == pytest.approx(path_length(paths[0]), rel=0.02, abs=0.05)
+        # Ways of the same cost may differ in length by a cell (0.05 m) at either end.
+        assert path_length(paths[1]) == pytest.approx(path_length(paths[0]), rel=0.02, abs=0.1)
 
 
 @pytest.mark.parametrize(
