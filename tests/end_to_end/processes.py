@@ -82,13 +82,15 @@ class Command:
             raise AssertionError(f"a traceback in:\n{self.text}")
 
     def _ended(self, members: list[psutil.Process]) -> int:
-        _, alive = psutil.wait_procs(members, END_S)
+        ended, alive = psutil.wait_procs(members, END_S)
         names = [" ".join(one.cmdline())[:150] for one in alive]
         assert not alive, f"still running after {END_S} s: {names}, after:\n{self.text}"
         assert not self._members(), "processes were left behind"
+        # Where psutil has waited for the command itself, only psutil has its status.
+        known = [one.returncode for one in ended if one.pid == self._process.pid and one.returncode is not None]
         status = self._process.wait()
         self._printed.join()
-        return status
+        return known[0] if known else status
 
     def _members(self) -> list[psutil.Process]:
         """Return the processes that came from the command and have not ended."""

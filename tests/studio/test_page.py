@@ -483,7 +483,9 @@ def test_what_is_shown_is_saved_and_opened_as_a_configuration_of_rviz(browser, s
             f"location.search.includes('layout=mine.rviz') && {READY} && {ADDED}.includes('Particles')", 60
         )
         browser.wait_for("document.querySelector('[data-display=Particles] [title]').title.includes('not supported')")
+        browser.wait_for("daidalos.state().settled")
         browser.click_on("input[aria-label='Show LaserScan']")
+        browser.wait_for("!document.querySelector('input[aria-label=\"Show LaserScan\"]').checked")
         browser.evaluate("URL.createObjectURL = (blob) => { window.saved = blob.text(); return 'data:,'; }")
         browser.click_on("[data-test=file]")
         browser.evaluate(
