@@ -5,6 +5,7 @@ import { PerspectiveCamera, WebGLRenderer } from "three";
 import { attachedWorld } from "../app/test_hooks";
 import type { CameraInfo, CompressedImage, Image } from "../generated/sensor_msgs";
 import { frameOf, stampOf } from "../displays/message_filter";
+import { beginsFine } from "../scene/graphics";
 import { isCalibrated, setLens } from "../scene/lens";
 import { Transform } from "../tf/buffer";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
@@ -24,7 +25,7 @@ function CameraPanel(props: PanelProps) {
   const note = useSignal("");
   useEffect(() => {
     const canvas = overlay.current as HTMLCanvasElement;
-    renderer.current = new WebGLRenderer({ canvas, alpha: true, antialias: true });
+    renderer.current = new WebGLRenderer({ canvas, alpha: true, antialias: beginsFine });
     renderer.current.setClearColor(0, 0);
     return () => renderer.current?.dispose();
   }, []);

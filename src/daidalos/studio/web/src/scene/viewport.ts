@@ -11,6 +11,7 @@ import {
   PCFShadowMap,
 } from "three";
 import { gradientOf } from "./backdrop";
+import { beginsFine } from "./graphics";
 import { Lights } from "./lights";
 import { DAYLIGHT, type Look } from "./looks";
 import { Quality } from "./quality";
@@ -35,7 +36,7 @@ export class Viewport {
 
   constructor(private readonly container: HTMLElement) {
     // Transparent: sky and ground are the container's background, which costs nothing here.
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ antialias: beginsFine, alpha: true, powerPreference: "high-performance" });
     this.renderer.setClearColor(new Color(0), 0);
     this.renderer.shadowMap.type = PCFShadowMap;
     this.canvas = this.renderer.domElement;
