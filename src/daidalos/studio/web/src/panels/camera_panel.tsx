@@ -25,7 +25,7 @@ function CameraPanel(props: PanelProps) {
   const note = useSignal("");
   useEffect(() => {
     const canvas = overlay.current as HTMLCanvasElement;
-    renderer.current = new WebGLRenderer({ canvas, alpha: true, antialias: beginsFine });
+    renderer.current = new WebGLRenderer({ canvas, alpha: true, antialias: beginsFine, preserveDrawingBuffer: true });
     renderer.current.setClearColor(0, 0);
     return () => renderer.current?.dispose();
   }, []);
