@@ -8,9 +8,10 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from daidalos.lockstep.options import Options, add_options
 
 _ENVIRONMENT = {
     "RMW_IMPLEMENTATION": "rmw_daidalos_inprocess",
@@ -24,36 +25,6 @@ _ENVIRONMENT = {
 }
 
 
-@dataclass(frozen=True)
-class Options:
-    """Options of a run.
-
-    Parameters
-    ----------
-    seed : int
-        Of all random numbers.
-    until_s : float, optional
-        Simulated time [s] after which the command is interrupted.
-    bag : str, optional
-        Folder of the bag to which all topics are recorded.
-    """
-
-    seed: int = 0
-    until_s: float | None = None
-    bag: str | None = None
-
-    @classmethod
-    def of(cls, args: Namespace) -> Options:
-        """Return the options of a parsed command line."""
-        return cls(args.seed, args.until, args.bag)
-
-    def words(self) -> list[str]:
-        """Return them as words of a command line."""
-        until = [] if self.until_s is None else ["--until", repr(self.until_s)]
-        bag = [] if self.bag is None else ["--bag", self.bag]
-        return ["--seed", str(self.seed), *until, *bag]
-
-
 def replace_process(command: Sequence[str], options: Options) -> int:
     """Run a command line in lock-step in place of this process; return its exit status where that cannot be replaced.
 
@@ -63,7 +34,7 @@ def replace_process(command: Sequence[str], options: Options) -> int:
         Of a program of this Python, such as ``["ros2", "launch", ...]``.
     options : Options
     """
-    words = [sys.executable, "-m", "daidalos.lockstep.start", *options.words(), "--", *command]
+    words = [sys.executable, "-P", "-m", "daidalos.lockstep.start", *options.words(), "--", *command]
     environment = os.environ | _ENVIRONMENT
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
@@ -75,20 +46,19 @@ def replace_process(command: Sequence[str], options: Options) -> int:
 def main() -> None:
     """Run the command line of this process, and end with its exit status."""
     parser = ArgumentParser("python -m daidalos.lockstep.start")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--until", type=float)
-    parser.add_argument("--bag")
+    add_options(parser)
     parser.add_argument("command", nargs="+")
     args = parser.parse_args()
+    options = Options.of(args)
 
     from daidalos.lockstep.run import Run, exit_status
     from daidalos.lockstep.scheduler import LockstepError
 
-    run = Run(args.seed)
+    run = Run(options.seed)
     from daidalos.lockstep.session import start
 
     try:
-        program = start(run, args.command, args.until, args.bag)
+        program = start(run, args.command, options.until_s, options.bag)
         run.go()
         status = exit_status(run, program)
     except LockstepError as error:

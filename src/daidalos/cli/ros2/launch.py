@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import sys
 from argparse import ArgumentParser, Namespace
@@ -13,6 +12,7 @@ from daidalos.cli.ros2.completion import complete
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Command, Status
 from daidalos.common.suggestions import did_you_mean
+from daidalos.lockstep import options
 
 if TYPE_CHECKING:
     from launch import LaunchDescription
@@ -81,7 +81,7 @@ class LaunchCommand(Command):
             help="Regex pattern for filtering which executables the --launch-prefix is applied to by matching the "
             "executable name.",
         )
-        _add_lockstep_arguments(parser)
+        options.add_arguments(parser)
         complete(
             parser.add_argument("package_name", help="Name of the ROS package which contains the launch file"),
             _complete_first,
@@ -108,6 +108,7 @@ class LaunchCommand(Command):
 
         from daidalos.nodes.asset_folders import record_named_files
 
+        options.check(args)
         path, words = _file_and_arguments(args)
         arguments = parse_launch_arguments(words)
         if args.show_all_subprocesses_output:
@@ -123,10 +124,9 @@ class LaunchCommand(Command):
             return 0
         _warn_of_misspelt(arguments, description)
         if args.lockstep:
-            from daidalos.lockstep.start import Options, replace_process
+            from daidalos.lockstep.start import replace_process
 
-            flags = [flag for flag, given in (("-n", args.noninteractive), ("-d", args.debug)) if given]
-            return replace_process(["ros2", "launch", *flags, str(path), *words], Options.of(args))
+            return replace_process(["ros2", *options.without_options(args.words)], options.Options.of(args))
         record_named_files([args.package_name, *words])
         return launch_source(
             source,
@@ -136,26 +136,6 @@ class LaunchCommand(Command):
             option_extensions=self._options,
             debug=args.debug,
         )
-
-
-def _add_lockstep_arguments(parser: ArgumentParser) -> None:
-    group = parser.add_argument_group("lock-step", "all nodes in one process under a stepped clock; not in ROS 2")
-    group.add_argument(
-        "--lockstep",
-        action="store_true",
-        help="Run as fast as the machine can, the same every time: threads run one at a time, in the order of "
-        "simulated time.",
-    )
-    group.add_argument("--seed", type=int, default=0, metavar="N", help="Seed of all random numbers (default: 0)")
-    group.add_argument("--until", type=_positive, metavar="S", help="Stop the launch after S simulated seconds")
-    group.add_argument("--bag", metavar="FOLDER", help="Record all topics to a bag")
-
-
-def _positive(text: str) -> float:
-    value = float(text)
-    if not 0.0 < value < math.inf:
-        raise ValueError
-    return value
 
 
 def _options() -> dict[str, Any]:

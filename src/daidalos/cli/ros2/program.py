@@ -59,6 +59,7 @@ def _run(argv: list[str]) -> int:
     from daidalos.cli.ros2.commands import commands
     from daidalos.cli.ros2.errors import CliError
     from daidalos.cli.ros2.extension import make_command
+    from daidalos.common.errors import UserError
     from daidalos.common.extensions import ExtensionError
     from daidalos.distribution import complete_environment
 
@@ -85,9 +86,12 @@ def _run(argv: list[str]) -> int:
         parser.print_help()
         return 0
     try:
+        args.words = argv  # for a command that is carried out by another process
         status = args._main(args)
     except CliError as error:
         return _fail(str(error), error.status)
+    except UserError as error:
+        return _fail(str(error), 1)
     except (RuntimeError, ValueError) as error:
         if isinstance(error, RecursionError | NotImplementedError) or _follows_interrupt(error):
             raise
