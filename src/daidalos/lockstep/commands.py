@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from daidalos.nodes import start
+from daidalos.workspaces import run_script
 from daidalos.workspaces.executables import built_in_program, is_script_of_this_python
 
 
@@ -53,11 +54,7 @@ def _python(arguments: Sequence[str]) -> tuple[list[str], Callable[[], Any]] | N
 def _script(path: str, arguments: Sequence[str]) -> tuple[list[str], Callable[[], Any]]:
     def body() -> int:
         sys.path.insert(0, os.path.dirname(os.path.realpath(path)))
-        program = sys.modules["__main__"]
-        program.__file__ = path
-        with open(path, "rb") as file:
-            code = compile(file.read(), path, "exec", dont_inherit=True)
-        exec(code, program.__dict__)
+        run_script.run(path)
         return 0
 
     return [path, *arguments], body

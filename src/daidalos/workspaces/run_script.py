@@ -21,13 +21,17 @@ _NAME_LENGTH = 15
 
 def main() -> None:
     """Run the script that the first argument names."""
-    from daidalos.common import tracebacks
-
     del sys.argv[0]
     path = sys.argv[0]
     sys.path[0] = os.path.dirname(os.path.realpath(path))
     with contextlib.suppress(OSError), open("/proc/self/comm", "w") as name:  # what `killall` looks for
         name.write(os.path.basename(path)[:_NAME_LENGTH])
+    run(path)
+
+
+def run(path: str) -> None:
+    """Run a script as ``__main__``, and report from now on what nobody catches by the lines of the user's code."""
+    from daidalos.common import tracebacks
 
     def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if issubclass(kind, KeyboardInterrupt):
