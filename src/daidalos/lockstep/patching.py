@@ -24,7 +24,7 @@ from collections.abc import Callable
 from typing import Any
 
 from daidalos.lockstep.primitives import Local, Lock, RLock
-from daidalos.lockstep.scheduler import EPOCH_NS, Owner, Scheduler, Wait
+from daidalos.lockstep.scheduler import EPOCH_NS, FIRST_IDENT, Owner, Scheduler, Wait
 
 start_real_thread = _thread.start_new_thread
 real_thread_ident = _thread.get_ident
@@ -99,11 +99,11 @@ def install(scheduler: Scheduler, hooks: Hooks) -> None:
 def _patch_threads(scheduler: Scheduler, hooks: Hooks) -> None:
     def get_ident() -> int:
         thread = scheduler.current
-        return 0x10000 + (thread.number if thread is not None else 0)
+        return FIRST_IDENT if thread is None else thread.ident
 
     def start_new_thread(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any = None) -> int:
         thread = scheduler.spawn(lambda: _run(function, args, kwargs or {}), hooks.owner(), _name_of(function))
-        return 0x10000 + thread.number
+        return thread.ident
 
     replacements = {
         "get_ident": get_ident,
@@ -155,7 +155,7 @@ def _patch_thread_class(scheduler: Scheduler, hooks: Hooks) -> None:
         self._lockstep = thread
         self._lockstep_done = threading.Event()
         thread.on_end.append(self._lockstep_done.set)
-        self._ident = 0x10000 + thread.number
+        self._ident = thread.ident
         self._native_id = self._ident
         module._active[self._ident] = self
         thread.on_end.append(lambda: module._active.pop(self._ident, None))
@@ -184,9 +184,7 @@ def _bootstrap(thread: Any) -> None:
         thread.run()
     except SystemExit:
         pass
-    except Exception:
-        threading.excepthook(threading.ExceptHookArgs((*sys.exc_info(), thread)))
-    except KeyboardInterrupt:
+    except (Exception, KeyboardInterrupt):
         threading.excepthook(threading.ExceptHookArgs((*sys.exc_info(), thread)))
 
 

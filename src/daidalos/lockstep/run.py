@@ -88,7 +88,7 @@ class Run:
         """Send a signal to the present program, or a real one, which comes as a negative number, to the first one."""
         if number < 0:
             self._interrupts += 1
-            if self._interrupts > 1:
+            if self._interrupts > 1 or not self.programs:
                 os._exit(128 - number)
             self.programs[0].send_signal(-number)
             return

@@ -35,6 +35,9 @@ READING_NS = 100_000
 """Time [ns] by which the clock advances when a thread has read it too often."""
 
 
+FIRST_IDENT = 0x10000
+"""What `threading.get_ident` returns outside of the run's threads; those have the numbers above."""
+
 _real_ident = _thread.get_ident
 _real_sleep = time.sleep
 _POLL_S = 0.0005
@@ -122,6 +125,11 @@ class Thread(greenlet):
         self.started = False
         self.on_end: list[Callable[[], None]] = []
         self._function = function
+
+    @property
+    def ident(self) -> int:
+        """What `threading.get_ident` returns in it."""
+        return FIRST_IDENT + self.number
 
     def run(self) -> None:
         """Run the function, and then whatever waits for the end."""
