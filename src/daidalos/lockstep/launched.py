@@ -61,7 +61,7 @@ class LaunchedProgram:
 
 
 class ProgramStarter:
-    """Starter of a launch's processes, in place of `launch._process.start_process`.
+    """Starter of a launch's processes, for `launch._process.start_processes_by`.
 
     Parameters
     ----------

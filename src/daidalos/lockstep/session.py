@@ -8,7 +8,8 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from launch import _process
+from launch import launch_service
+from launch._process import start_processes_by
 
 from daidalos.lockstep.commands import body_of
 from daidalos.lockstep.launched import ProgramStarter
@@ -26,7 +27,7 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     command : list of str
         The command line.
     until_s : float, optional
-        Simulated time [s] after which the command is interrupted.
+        Simulated time [s] after which the command's launch is shut down, or else the command interrupted.
     bag : str, optional
         Folder of the bag to which all topics are recorded.
 
@@ -35,7 +36,7 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     LockstepError
         When the command is not a program of this Python.
     """
-    _process.start_process = ProgramStarter(run.create)
+    start_processes_by(ProgramStarter(run.create))
     system: Any = os
     system.chdir = change_folder
     system.execve = system.execvpe = _replace_program
@@ -45,7 +46,7 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
         _start_recorder(run, program, bag)
     program.start()
     if until_s is not None:
-        run.scheduler.spawn(lambda: _interrupt_at(run, program, until_s), run.programs[0], "--until")
+        run.scheduler.spawn(lambda: _end_at(run, program, until_s), run.programs[0], "--until")
     return program
 
 
@@ -77,9 +78,16 @@ def _start_recorder(run: Run, program: Program, bag: str) -> None:
     recorder.start()
 
 
-def _interrupt_at(run: Run, program: Program, until_s: float) -> None:
+def _end_at(run: Run, program: Program, until_s: float) -> None:
     run.scheduler.sleep_until(round(1e9 * until_s))
-    program.send_signal(signal.SIGINT)
+    if program.status is not None:
+        return
+    sys.stderr.write(f"[lockstep] the run ends at {until_s:g} s\n")
+    launches = launch_service.running_services()
+    if launches:
+        launches[0].shutdown()
+    else:
+        program.send_signal(signal.SIGINT)
 
 
 def _replace_program(path: str, argv: Sequence[str], environ: Mapping[str, str]) -> NoReturn:

@@ -15,7 +15,7 @@ import sys
 import types
 from collections.abc import Callable, Coroutine, Generator
 from contextlib import AbstractContextManager
-from typing import Any
+from typing import Any, Protocol
 
 from daidalos.workspaces.executables import interrupts_blocked, reporting_command
 from daidalos.workspaces.orphans import guard
@@ -32,8 +32,69 @@ _ORPHANS_TIMEOUT = 0.5
 OnOutput = Callable[[int, bytes], None]
 
 
+class RunningProcess(Protocol):
+    """What a launch asks of a process that it started: the interface of `ChildProcess`."""
+
+    @property
+    def pid(self) -> int:
+        """The number of the process."""
+
+    @property
+    def running(self) -> bool:
+        """Whether it has not ended yet."""
+
+    @property
+    def has_leftovers(self) -> bool:
+        """Whether it has ended and something that it started goes on."""
+
+    async def wait(self) -> int:
+        """Wait until it has ended; return its exit code."""
+
+    def write(self, data: bytes) -> None:
+        """Write to its standard input."""
+
+    def send_signal(self, signum: int, *, to_group: bool) -> None:
+        """Send a signal to it, or to it and all that it started."""
+
+    async def end_group(self, *, timeouts: tuple[float, float], interrupted: bool) -> None:
+        """Stop what it left running."""
+
+    def close(self) -> None:
+        """Release what belongs to it."""
+
+
+class ProcessStarter(Protocol):
+    """Function that starts a command line; `start_child` says what its arguments are and what it raises."""
+
+    async def __call__(
+        self,
+        cmd: list[str],
+        *,
+        cwd: str | None,
+        env: dict[str, str],
+        shell: bool,
+        emulate_tty: bool,
+        on_output: OnOutput,
+    ) -> RunningProcess:
+        """Start it."""
+
+
+def start_processes_by(starter: ProcessStarter) -> None:
+    """Start the processes of all launches from now on by another function than `start_child`.
+
+    It is for who runs programs as parts of one process, as `daidalos.lockstep` does.
+    """
+    global _starter
+    _starter = starter
+
+
+def process_starter() -> ProcessStarter:
+    """Return the function that starts the processes of launches."""
+    return _starter
+
+
 class ChildProcess(asyncio.SubprocessProtocol):
-    """A running child; make one with `start_process`.
+    """A running child; make one with `start_child`.
 
     Parameters
     ----------
@@ -164,7 +225,7 @@ class ChildProcess(asyncio.SubprocessProtocol):
             self._exited.set_result(self._transport.get_returncode())
 
 
-async def start_process(
+async def start_child(
     cmd: list[str],
     *,
     cwd: str | None,
@@ -218,6 +279,9 @@ async def start_process(
     guard.watch(-child.pid)
     child._streams = [_Stream(1, output[0], on_output), _Stream(2, errors[0], on_output)]
     return child
+
+
+_starter: ProcessStarter = start_child
 
 
 async def _spawn(child: ChildProcess, cmd: list[str], shell: bool, options: dict[str, Any]) -> None:

@@ -9,8 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from . import _process
-from ._process import ChildProcess
+from ._process import RunningProcess, process_starter
 from .event import Event
 from .event_handler import BaseEventHandler
 from .events import Shutdown, matches_action
@@ -90,7 +89,7 @@ class ProcessRunner:
         self._context = context
         self._logger = get_logger(self._program.name)
         self._loggers = get_output_loggers(self._program.name, options.output)
-        self._child: ChildProcess | None = None
+        self._child: RunningProcess | None = None
         self._life: asyncio.Task[None] | None = None
         self._escalation: asyncio.Task[None] | None = None
         self._stopping: asyncio.Future[None] = context.running_loop.create_future()
@@ -133,7 +132,7 @@ class ProcessRunner:
         if self._options.log_cmd:
             self._logger.info(f"process details: cmd={program.cmd}, cwd={program.cwd}, shell={self._options.shell}")
         try:
-            self._child = await _process.start_process(
+            self._child = await process_starter()(
                 program.cmd,
                 cwd=program.cwd,
                 env=program.env,
@@ -157,7 +156,7 @@ class ProcessRunner:
         await self._context.emit_event(ProcessExited(returncode=self.return_code, **details))
         return True
 
-    async def _after_exit(self, child: ChildProcess, code: int) -> None:
+    async def _after_exit(self, child: RunningProcess, code: int) -> None:
         for output, logger in zip((self.stdout, self.stderr), self._loggers, strict=True):
             self._log_lines(logger, output.finish())
         if code == 0:
@@ -215,11 +214,11 @@ class ProcessRunner:
                 self._stop_child(self._child)
         return None
 
-    def _stop_child(self, child: ChildProcess) -> None:
+    def _stop_child(self, child: RunningProcess) -> None:
         self._emit_signal(signal.SIGINT)
         self._escalation = self._context.running_loop.create_task(self._escalate(child))
 
-    async def _escalate(self, child: ChildProcess) -> None:
+    async def _escalate(self, child: RunningProcess) -> None:
         """Send harder and harder signals until the process has ended."""
         name = self._program.name
         sent = "SIGINT"
@@ -310,7 +309,7 @@ class _ProcessEventHandler(BaseEventHandler):
 class _LeftoverHandler(BaseEventHandler):
     """Event handler that stops, with the launch, what a process left running in its group."""
 
-    def __init__(self, child: ChildProcess, timeouts: tuple[float, float]) -> None:
+    def __init__(self, child: RunningProcess, timeouts: tuple[float, float]) -> None:
         super().__init__(matcher=lambda event: isinstance(event, Shutdown), handle_once=True)
         self.__child = child
         self.__timeouts = timeouts

@@ -9,7 +9,7 @@ import logging
 import signal
 import threading
 import traceback
-from collections.abc import Coroutine, Iterable, Iterator
+from collections.abc import Coroutine, Iterable, Iterator, Sequence
 from typing import Any
 
 from .event import Event
@@ -24,7 +24,13 @@ from .logging import get_logger, launch_config, log_launch_config
 from .utilities import AsyncSafeSignalManager, is_a_subclass, visit_all_entities_and_collect_futures
 
 _KILL_TIMEOUT = 2.0
+_running: list[LaunchService] = []
 _main_loop: asyncio.AbstractEventLoop | None = None
+
+
+def running_services() -> Sequence[LaunchService]:
+    """Return the services of this process that run, in the order in which they began."""
+    return tuple(_running)
 
 
 class LaunchService:
@@ -163,10 +169,12 @@ class LaunchService:
         self.__return_code = 0
         self.__interrupts = 0
         self.__error = None
+        _running.append(self)
         try:
             with self.__signals(loop):
                 yield
         finally:
+            _running.remove(self)
             with self.__lock:
                 self.__loop = None
                 self.__task = None
