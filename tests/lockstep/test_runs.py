@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from daidalos.lockstep.start import Options
+from daidalos.lockstep.options import Options
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the runs are interrupted by signals")
 
@@ -209,6 +209,7 @@ def test_the_exit_status_is_the_programs(tmp_path: Path, body: str, status: int)
     path = script(tmp_path, body)
     result = run(sys.executable, path, folder=tmp_path, options=Options(until_s=5.0))
     assert result.returncode == status, result.stderr
+    assert "daidalos" not in result.stderr  # the frames of a traceback are the user's own
 
 
 def test_ros2_launch_takes_the_options(tmp_path: Path) -> None:
@@ -218,3 +219,5 @@ def test_ros2_launch_takes_the_options(tmp_path: Path) -> None:
     result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=False)
     assert result.returncode == 0, result.stderr
     assert "[1577836801.000000000] [listener]: I heard: [Hello World: 0]" in result.stdout + result.stderr
+    assert "[lockstep] the run ends at 2 s" in result.stderr
+    assert "interrupted" not in result.stdout + result.stderr

@@ -142,7 +142,7 @@ class Program(Owner):
         """Start the program: it runs after the threads that are ready now."""
         main = threading.Thread(name="MainThread", daemon=False)
         thread = self._main = self.scheduler.spawn(self._run, self, "MainThread")
-        main._ident = main._native_id = 0x10000 + thread.number  # type: ignore[attr-defined]
+        main._ident = main._native_id = thread.ident  # type: ignore[attr-defined]
         main._lockstep = thread  # type: ignore[attr-defined]
         main._started.set()  # type: ignore[attr-defined]
         threading._active[main.ident] = main  # type: ignore[attr-defined]
@@ -262,6 +262,7 @@ class Program(Owner):
         if self._log_output is None:
             output = module.Output()
             output.to_file = False  # the same run would write the same names
+            output.relative_sources = True  # bags must not depend on where this is installed
             self._log_output = output.__dict__
         module.OUTPUT.__dict__ = self._log_output
 

@@ -1,15 +1,17 @@
 """Loggers: levels, filters, where messages go."""
 
 import gc
+import os
 from pathlib import Path
 
 import pytest
+import rclpy
 import rclpy.logging
 from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 from rclpy.clock import ROSClock
 from rclpy.context import Context
-from rclpy.impl.log_output import OUTPUT
+from rclpy.impl.log_output import OUTPUT, Output
 from rclpy.logging import LoggingSeverity, get_logger
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy
@@ -158,3 +160,11 @@ def test_a_clock_at_zero_throttles() -> None:
         clock.set_ros_time_override(Time(seconds=seconds, clock_type=clock.clock_type))
         logged.append(logger.info("message", throttle_duration_sec=2, throttle_time_source_type=clock))
     assert logged == [False, False, True, False, True]
+
+
+def test_source_files_are_relative_to_where_they_are_imported_from_if_wanted() -> None:
+    output = Output()
+    assert output.source_file(rclpy.__file__) == rclpy.__file__
+    output.relative_sources = True
+    assert output.source_file(rclpy.__file__) == "rclpy/__init__.py"
+    assert output.source_file(os.path.abspath("/no folder of imports/program.py")) == "program.py"

@@ -5,6 +5,7 @@ Formats, colours, environment variables and file names are those of rcutils and 
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 import threading
@@ -53,11 +54,16 @@ class Output:
         self.default_level = LoggingSeverity.INFO
         self.to_console = True
         self.to_file = True
+        self.relative_sources = False
         self.file_stem = ""
         self.handlers: dict[str, Callable[[], Callable[[Record], None] | None]] = {}
         self._format = os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or _DEFAULT_FORMAT
         self._use_stdout = os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1"
         self._file: IO[str] | None = None
+
+    def source_file(self, path: str) -> str:
+        """Return how messages name the source file of a call: relative to ``sys.path`` if `relative_sources` is set."""
+        return _relative_to_path(path) if self.relative_sources else path
 
     def level_of(self, name: str) -> LoggingSeverity:
         """Return the level set for exactly this logger, UNSET if none is."""
@@ -151,6 +157,14 @@ def log_directory() -> Path:
 def _wants_colour(stream: IO[str]) -> bool:
     wish = os.environ.get("RCUTILS_COLORIZED_OUTPUT")
     return wish == "1" if wish in ("0", "1") else stream.isatty()
+
+
+@functools.cache
+def _relative_to_path(file: str) -> str:
+    """Return a file's path relative to the folder that it is imported from; only its name where that is none."""
+    folders = [folder for folder in map(os.path.abspath, sys.path) if file.startswith(os.path.join(folder, ""))]
+    longest = max(folders, key=len, default=os.path.dirname(file))
+    return Path(os.path.relpath(file, longest)).as_posix()
 
 
 def _formatted(template: str, record: Record) -> str:

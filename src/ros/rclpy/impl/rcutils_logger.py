@@ -248,9 +248,8 @@ class RcutilsLogger:
         code = frame.f_code
         if self._places.setdefault((code, frame.f_lasti), (name, severity)) != (name, severity):
             self._raise_changed(code, frame.f_lasti, name)
-        OUTPUT.write(
-            Record(severity, name, str(message), time.time_ns(), code.co_name, code.co_filename, frame.f_lineno)
-        )
+        file = OUTPUT.source_file(code.co_filename)
+        OUTPUT.write(Record(severity, name, str(message), time.time_ns(), code.co_name, file, frame.f_lineno))
         return True
 
     def _raise_changed(self, code: CodeType, position: int, name: str) -> None:
