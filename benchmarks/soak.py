@@ -1,6 +1,7 @@
 """What a long life of an rclpy process leaves behind: entities come and go, messages, calls and goals pass.
 
-`DAIDALOS_SOAK_S` says for how long: 600 s by default, 3600 for the hour.
+`DAIDALOS_SOAK_S` says for how long: 600 s by default, 3600 for the hour. `DAIDALOS_SOAK_ROUND_S` is the least time a
+round takes: 0 by default, more for a long run beside other work.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import contextlib
 import ctypes
 import gc
 import os
+import statistics
 import threading
 import time
 from typing import Any
@@ -16,8 +18,11 @@ from typing import Any
 import psutil
 
 SECONDS = float(os.environ.get("DAIDALOS_SOAK_S", "600"))
+ROUND_S = float(os.environ.get("DAIDALOS_SOAK_ROUND_S", "0"))
 SETTLING = 0.2
 """Part of the time after which memory counts: caches have been filled by then."""
+SAMPLES = 100
+"""How often memory is read in the whole time."""
 
 
 def run() -> dict[str, float]:
@@ -31,30 +36,34 @@ def soak(seconds: float) -> dict[str, float]:
     Returns
     -------
     dict
-        Growth of memory in MB after the settling time, threads and endpoints left over, calls and messages that
-        went wrong, and how many rounds of work were done.
+        Growth of memory in MB after the settling time and its slope by least squares, threads and endpoints left
+        over, calls and messages that went wrong, and how many rounds of work were done.
     """
     import rclpy
     from rclpy.executors import MultiThreadedExecutor
 
     threads = threading.active_count()
     process, begin = psutil.Process(), time.monotonic()
-    rounds, errors, settled = 0, 0, 0
+    rounds, errors = 0, 0
+    samples: list[tuple[float, float]] = []
+    pace = threading.Event()
     with rclpy.init(args=[]):
         watcher = rclpy.create_node("soak_watcher")
         while (spent := time.monotonic() - begin) < seconds:
             with MultiThreadedExecutor(2) as executor:
                 errors += _round(executor, rounds)
             rounds += 1
-            if not settled and spent > SETTLING * seconds:
-                settled = _resident(process)
-        grown = _resident(process) - settled
+            if spent > seconds * (SETTLING + (1 - SETTLING) * len(samples) / SAMPLES):
+                samples.append((spent, _resident(process) / 2**20))
+            pace.wait(ROUND_S - (time.monotonic() - begin - spent))
+        samples.append((seconds, _resident(process) / 2**20))
         endpoints = len([one for one in watcher.handle.graph.endpoints() if one.node.name != "soak_watcher"])
     deadline = time.monotonic() + 5
     while threading.active_count() > threads and time.monotonic() < deadline:
         time.sleep(0.01)
     return {
-        "memory_growth_mb": grown / 2**20,
+        "memory_growth_mb": samples[-1][1] - samples[0][1],
+        "memory_slope_mb_per_h": 3600 * statistics.linear_regression(*zip(*samples, strict=True)).slope,
         "threads_left": threading.active_count() - threads,
         "endpoints_left": endpoints,
         "errors": errors,

@@ -5,15 +5,17 @@ from __future__ import annotations
 import logging
 import os
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from sensor_msgs.msg import Image
-from std_msgs.msg import String
+from std_msgs.msg import Int32, String
 
-from daidalos.transport.environment import Environment
+from daidalos.transport.environment import DiscoveryRange, Environment
 from daidalos.transport.graph import EndpointKind
+from daidalos.transport.publisher import Publisher
 from daidalos.transport.qos import Qos
 from daidalos.transport.session import Session
 from daidalos.transport.shared import make_backend
@@ -34,8 +36,15 @@ def session(domain: int) -> Iterator[Session]:
     session.close()
 
 
-def peer(role: str, domain: int) -> Peer:
-    return Peer(role, script=SCRIPT, ROS_DOMAIN_ID=str(domain), CYCLONEDDS_URI=LOCAL)
+# What ROS 2 configures for its default range, SUBNET: others are found by multicast alone.
+SUBNET = (
+    "<CycloneDDS><Domain><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+    "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex></Discovery></Domain></CycloneDDS>"
+)
+
+
+def peer(role: str, domain: int, uri: str = LOCAL) -> Peer:
+    return Peer(role, script=SCRIPT, ROS_DOMAIN_ID=str(domain), CYCLONEDDS_URI=uri)
 
 
 def test_large_messages_within_the_depth_all_arrive(session, domain):
@@ -86,3 +95,34 @@ def test_settling_waits_for_a_participant_that_has_not_listed_its_nodes(domain):
             assert [node.name for node in session.graph.nodes()] == ["slow"]
         finally:
             session.close()
+
+
+@pytest.mark.parametrize("reach", [DiscoveryRange.LOCALHOST, DiscoveryRange.SUBNET])
+def test_a_program_of_ros_2s_default_range_hears_us_whoever_starts_first(domain, reach):
+    with peer("texts", domain, SUBNET).ready() as earlier:
+        session = Session(make_backend(Environment(domain, reach, middleware="rmw_cyclonedds_cpp")))
+        try:
+            publisher = session.create_publisher(node_of(session, "talker"), "/text", String, Qos())
+            with peer("texts", domain, SUBNET).ready() as later:
+                for listener in (earlier, later):
+                    publish_until_heard(session, publisher, listener)
+        finally:
+            session.close()
+
+
+def test_our_own_program_of_the_wider_range_hears_one_of_the_narrower(domain, session):
+    publisher = session.create_publisher(node_of(session, "talker"), "/topic", Int32, Qos())
+    wider = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}
+    with Peer("listen", ROS_DOMAIN_ID=str(domain), **wider).ready() as listener:
+        assert session.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
+        publisher.publish(Int32(data=1))
+        listener.wait_for("heard 1")
+
+
+def publish_until_heard(session: Session, publisher: Publisher, listener: Peer) -> None:
+    """Publish until a peer has got a text; whether one peer more is matched cannot be asked."""
+    deadline = time.monotonic() + TIMEOUT_S
+    while not any("got" in line for line in listener.lines):
+        assert time.monotonic() < deadline, "nothing was heard"
+        publisher.publish(String(data="again"))
+        session.graph.wait_for(lambda: False, 0.05)

@@ -29,7 +29,7 @@ def test_sockets_are_filtered_unless_the_range_is_the_network(domain, reach):
         found = [stack.enter_context(one) for one in loopback._receiving_sockets()]
         lengths = {_filter_length(one) for one in found if one.getsockname()[1] in ports}
     session.close()
-    assert lengths == ({0} if reach is DiscoveryRange.SUBNET else {4})
+    assert lengths == ({0} if reach is DiscoveryRange.SUBNET else {6})
 
 
 def _filter_length(receiver: socket.socket) -> int:

@@ -36,7 +36,7 @@ from daidalos.transport.cyclonedds.library import (
     TopicDescriptor,
     load,
 )
-from daidalos.transport.cyclonedds.loopback import confine, is_confined
+from daidalos.transport.cyclonedds.loopback import confine, drops_what_others_send
 from daidalos.transport.cyclonedds.qos import HISTORY_KEY, dds_qos, history_text
 from daidalos.transport.cyclonedds.reception import Reception, SampleReader
 from daidalos.transport.cyclonedds.writer import Writer
@@ -365,7 +365,7 @@ def _join_domain(library: Library, environment: Environment) -> int:
                     "hundred processes are in the domain"
                 )
             entity = made if made >= 0 else None
-            if is_confined(environment):
+            if drops_what_others_send(environment):
                 confine(number)
         _domains[number] = (entity, users + 1)
     return number

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from xml.sax.saxutils import quoteattr
 
-from daidalos.transport.cyclonedds.loopback import FIRST_PORT, PORTS_PER_DOMAIN
+from daidalos.transport.cyclonedds.loopback import FIRST_PORT, PORTS_PER_DOMAIN, drops_what_others_send
 from daidalos.transport.environment import DiscoveryRange, Environment
 
 _LOCALHOST = "127.0.0.1"
@@ -35,28 +35,33 @@ def _reach(environment: Environment) -> str:
         case DiscoveryRange.OFF:
             return f"{_MULTICAST_OFF}<Discovery><Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery>"
         case DiscoveryRange.LOCALHOST:
-            return _LOOPBACK + _peers(environment)
+            multicast = _MULTICAST_WITHIN_MACHINE if drops_what_others_send(environment) else _MULTICAST_OFF
+            return multicast + _LARGE_DATAGRAMS + _peers(environment)
     return _peers(environment)
 
 
 _MULTICAST_OFF = "<General><AllowMulticast>false</AllowMulticast></General>"
+# Programs of the whole network's range announce themselves by multicast alone. What they send reaches the programs of
+# this machine too; what we send with this time to live does not leave it.
+_MULTICAST_WITHIN_MACHINE = (
+    "<General><AllowMulticast>spdp</AllowMulticast><MulticastTimeToLive>0</MulticastTimeToLive></General>"
+)
 # Datagrams as large as UDP permits: a large message is acknowledged some 40 times sooner. Beyond this machine, where
 # a datagram of several packets is lost with any of them, the library's own sizes stay.
-_LOOPBACK = (
-    "<General><AllowMulticast>false</AllowMulticast>"
-    "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>65000B</FragmentSize></General>"
-)
+_LARGE_DATAGRAMS = "<General><MaxMessageSize>65500B</MaxMessageSize><FragmentSize>65000B</FragmentSize></General>"
 
 
 def _peers(environment: Environment) -> str:
     """Return the configuration of unicast peers and of the predictable ports that it needs.
 
-    This machine is always among them, so that nodes of a wider range are found by those of a narrower one.
+    This machine is always among them, so that nodes of a wider range are found by those of a narrower one: under its
+    loopback address and, by `AddLocalhost`, under that of the interface in use, since the library from version 11 on
+    ignores announcements that come over another interface.
     """
     highest = (_LAST_PORT - FIRST_PORT - PORTS_PER_DOMAIN * environment.domain - _DATA_PORT_OFFSET) // 2
     listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (_LOCALHOST, *environment.static_peers))
     return (
         "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
         f"<MaxAutoParticipantIndex>{min(_MAX_PARTICIPANTS, highest)}</MaxAutoParticipantIndex>"
-        f"<Peers>{listed}</Peers></Discovery>"
+        f'<Peers AddLocalhost="true">{listed}</Peers></Discovery>'
     )

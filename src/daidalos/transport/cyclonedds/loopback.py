@@ -1,9 +1,9 @@
 """Restriction of a domain's sockets to what comes from this machine.
 
 The library binds the sockets on which it receives to every address, whichever interface it is told to use. On Linux
-they get a filter that drops what did not come over the loopback device. Processes of this machine are heard
-nevertheless, also under the machine's address in the network: the system sends what is for itself over loopback.
-(A socket that is bound to that device would not hear them.)
+they get a filter that drops what neither came over the loopback device nor is a copy of what this machine sent by
+multicast. Processes of this machine are heard nevertheless, also under the machine's address in the network: the
+system sends what is for itself over loopback. (A socket that is bound to that device would not hear them.)
 """
 
 from __future__ import annotations
@@ -23,9 +23,11 @@ from daidalos.transport.environment import DiscoveryRange, Environment
 _LOGGER = logging.getLogger(__name__)
 FIRST_PORT, PORTS_PER_DOMAIN = 7400, 250
 """Ports of DDS (RTPS 2.5, 9.6.2.3)."""
-# Of linux/filter.h and asm-generic/socket.h: a classic BPF program that compares the device of a packet.
+# Of linux/filter.h, linux/if_packet.h and asm-generic/socket.h: a classic BPF program that compares the device and the
+# kind of a packet.
 _SO_ATTACH_FILTER = 26
-_LOAD_DEVICE, _DEVICE = 0x20, 0xFFFFF000 + 8
+_LOAD, _KIND, _DEVICE = 0x20, 0xFFFFF000 + 4, 0xFFFFF000 + 8
+_LOOPED_BACK = 5
 _JUMP_IF_EQUAL, _RETURN = 0x15, 0x06
 _ALL = 0xFFFFFFFF
 _ANY = ("0.0.0.0", "::")
@@ -40,10 +42,13 @@ def is_confined(environment: Environment) -> bool:
     return environment.discovery is not DiscoveryRange.SUBNET and not elsewhere
 
 
+def drops_what_others_send(environment: Environment) -> bool:
+    """Return whether a domain's sockets drop what other machines send."""
+    return sys.platform.startswith("linux") and is_confined(environment)
+
+
 def confine(domain: int) -> None:
-    """Make the sockets of this process in a domain's range of ports drop what other machines send."""
-    if not sys.platform.startswith("linux"):
-        return
+    """Make the sockets of this process in a domain's range of ports drop what other machines send, on Linux."""
     first = FIRST_PORT + PORTS_PER_DOMAIN * domain
     for opened in _receiving_sockets():
         with opened:
@@ -60,12 +65,14 @@ def confine(domain: int) -> None:
 
 
 def _drop_from_elsewhere(receiver: socket.socket) -> None:
-    """Make a socket drop the packets that did not come over the loopback device."""
+    """Make a socket drop the packets that neither came over the loopback device nor were sent here by multicast."""
     program = b"".join(
         struct.pack("=HBBI", *instruction)
         for instruction in (
-            (_LOAD_DEVICE, 0, 0, _DEVICE),
-            (_JUMP_IF_EQUAL, 0, 1, socket.if_nametoindex("lo")),
+            (_LOAD, 0, 0, _DEVICE),
+            (_JUMP_IF_EQUAL, 2, 0, socket.if_nametoindex("lo")),
+            (_LOAD, 0, 0, _KIND),
+            (_JUMP_IF_EQUAL, 0, 1, _LOOPED_BACK),
             (_RETURN, 0, 0, _ALL),
             (_RETURN, 0, 0, 0),
         )
