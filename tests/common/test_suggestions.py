@@ -1,4 +1,7 @@
-from daidalos.common.suggestions import did_you_mean, hint_line, near, near_or_all
+from hypothesis import given
+from hypothesis import strategies as st
+
+from daidalos.common.suggestions import MIN_LIKENESS, _likeness, did_you_mean, hint_line, near, near_or_all
 
 TOPICS = ["/chatter", "/lab/enable", "/lab/add_two_ints", "/scan"]
 
@@ -35,3 +38,11 @@ def test_few_names_are_listed_and_many_are_counted():
     assert near_or_all("/x", [], "topics") == "There are no topics\n"
     many = [f"/number_{number}" for number in range(30)]
     assert near_or_all("/x", many, "topics") == "There is no '/x' among 30 topics\n"
+
+
+@given(st.text("ab/:", max_size=8), st.lists(st.text("ab/:", max_size=8), max_size=4))
+def test_the_quick_filter_drops_nothing_that_is_near(name, known):
+    """The filter of upper bounds changes no answer."""
+    likeness = {other: _likeness(name, other) for other in known if other != name}
+    expected = sorted((o for o in likeness if likeness[o] >= MIN_LIKENESS), key=lambda o: (-likeness[o], o))
+    assert near(name, known) == expected[:3]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from difflib import SequenceMatcher
 
 MIN_LIKENESS = 0.7
@@ -16,7 +16,8 @@ MAX_LISTED = 12
 
 def near(name: str, known: Iterable[str]) -> list[str]:
     """Return at most three of the known names that are like a name, the nearest first."""
-    likeness = {other: _likeness(name, other) for other in known if other != name}
+    may_be_like = _filter(name)
+    likeness = {other: _likeness(name, other) for other in known if other != name and may_be_like(other)}
     found = [other for other in likeness if likeness[other] >= MIN_LIKENESS]
     return sorted(found, key=lambda other: (-likeness[other], other))[:3]
 
@@ -62,9 +63,28 @@ def hint_line(name: str, known: Iterable[str]) -> str:
     return f"{text}\n" if text else ""
 
 
+def _filter(name: str) -> Callable[[str], bool]:
+    """Return a predicate that rejects most of what is not like a name, by upper bounds of `_likeness`."""
+    whole, leaf = SequenceMatcher(None, b=name), SequenceMatcher(None, b=_leaf(name))
+
+    def may_be_like(other: str) -> bool:
+        whole.set_seq1(other)
+        leaf.set_seq1(_leaf(other))
+        return (
+            _weighted(leaf.real_quick_ratio(), whole.real_quick_ratio()) >= MIN_LIKENESS
+            and _weighted(leaf.quick_ratio(), whole.quick_ratio()) >= MIN_LIKENESS
+        )
+
+    return may_be_like
+
+
 def _likeness(one: str, other: str) -> float:
     leaf = SequenceMatcher(None, _leaf(one), _leaf(other)).ratio()
-    return LEAF_WEIGHT * leaf + (1.0 - LEAF_WEIGHT) * SequenceMatcher(None, one, other).ratio()
+    return _weighted(leaf, SequenceMatcher(None, one, other).ratio())
+
+
+def _weighted(leaf: float, whole: float) -> float:
+    return LEAF_WEIGHT * leaf + (1.0 - LEAF_WEIGHT) * whole
 
 
 def _leaf(name: str) -> str:

@@ -198,6 +198,8 @@ class Link:
         What it carries.
     gravity, kinematic, self_collide, wind : bool or None
         SDF's switches; `self_collide` None leaves it to the model.
+    static : bool
+        Part of a nested model that does not move, whatever pushes.
     where : str
         The place in the description, for errors.
     """
@@ -213,6 +215,7 @@ class Link:
     kinematic: bool = False
     self_collide: bool | None = None
     wind: bool = False
+    static: bool = False
     linear_damping: float = 0.0
     angular_damping: float = 0.0
     where: str = field(default="", compare=False)

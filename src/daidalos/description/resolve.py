@@ -120,12 +120,21 @@ def _file(uri: str, rest: str, base: Path | None, model_path: Sequence[Path]) ->
 def _named(
     scheme: str, rest: str, base: Path | None, packages: PackageResolver | None, model_path: Sequence[Path]
 ) -> Iterator[Path]:
+    in_models = [folder / rest for folder in model_path]
+    if scheme == "package":
+        yield from _packaged(rest, packages)
+        yield from in_models
+    else:
+        yield from in_models
+        yield from _packaged(rest, packages)
+    yield from _near(rest, base)
+
+
+def _packaged(rest: str, packages: PackageResolver | None) -> Iterator[Path]:
     name, _, inside = rest.partition("/")
     share = packages(name) if packages is not None else None
-    in_package = [] if share is None else [Path(share) / inside]
-    in_models = [folder / rest for folder in model_path]
-    yield from in_package + in_models if scheme == "package" else in_models + in_package
-    yield from _near(rest, base)
+    if share is not None:
+        yield Path(share) / inside
 
 
 def _near(rest: str, base: Path | None) -> Iterator[Path]:

@@ -18,7 +18,7 @@ from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.build import add_model
 from daidalos.simulation.conversion.couplings import close_loop
 from daidalos.simulation.conversion.options import set_options
-from daidalos.simulation.conversion.preparation import Progress
+from daidalos.simulation.conversion.preparation import PreparedMeshes, Progress
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import Instance
@@ -83,6 +83,10 @@ class Compilation:
     def prepare(self, models: Iterable[Model], progress: Progress | None = None) -> None:
         """Prepare the collision meshes of models that are about to be added, in parallel; see `prepare_meshes`."""
         self._assets.prepare(models, progress)
+
+    def take_prepared(self, meshes: PreparedMeshes) -> None:
+        """Take collision meshes of models that are about to be added; see `prepare_meshes`."""
+        self._assets.take_prepared(meshes)
 
     def add(self, model: Model, pose: Pose, namespace: str, components: list[Component]) -> Instance:
         """Add a model, whose name must be free, with its components.

@@ -64,12 +64,13 @@ class Engine:
         self._waiting: dict[str, Instance] = {}
         self._overlaps = Overlaps()
         self._goal_ns = 0
+        self._progress = progress
         self.step_ns, self._substeps = physics_step(self.world.physics)
         self._compilation = Compilation(self.world, self._timestep, self._has_subscribers, self._warn)
         for line in self.world.warnings:
             self._warn(line)
         check_world_plugins(self.world, self._warn)
-        self._populate(progress)
+        self._populate()
 
     @property
     def physics(self) -> Physics:
@@ -262,8 +263,8 @@ class Engine:
 
     # Inside
 
-    def _populate(self, progress: Progress | None) -> None:
-        self._compilation.prepare((*self.world.models, *(actor.model for actor in self.world.actors)), progress)
+    def _populate(self) -> None:
+        self._compilation.prepare((*self.world.models, *(actor.model for actor in self.world.actors)), self._progress)
         for model in self.world.models:
             self._add(model, model.pose, "")
         for actor in self.world.actors:

@@ -16,6 +16,7 @@ from daidalos.description.robot import Robot
 from daidalos.description.scaling import scaled
 from daidalos.description.world import Model
 from daidalos.samples.commands import PositionTrajectoryCommand
+from daidalos.simulation.conversion.preparation import PreparedMeshes
 from daidalos.simulation.engine import Engine
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import JointPush, Push
@@ -42,7 +43,7 @@ class Simulation(Engine):
         `warnings`.
     progress : callable or None
         Called with the number of collision meshes that are ready, and of all of them, every two seconds while
-        the world is loaded.
+        the world is loaded and models are spawned.
 
     Raises
     ------
@@ -58,6 +59,7 @@ class Simulation(Engine):
         name: str | None = None,
         pose: Pose | None = None,
         namespace: str = "",
+        meshes: PreparedMeshes | None = None,
     ) -> str:
         """Add a model to the running world.
 
@@ -70,6 +72,8 @@ class Simulation(Engine):
             Of the model's frame in the world; None takes the description's.
         namespace : str
             Relative topics of its plugins and sensors go below it.
+        meshes : PreparedMeshes or None
+            What `prepare_meshes` returned for the model, maybe in another thread; None prepares them here.
 
         Returns
         -------
@@ -85,7 +89,10 @@ class Simulation(Engine):
         """
         model = model_from_robot(description) if isinstance(description, Robot) else description
         name = name or model.name
-        self._compilation.prepare((model,))
+        if meshes is None:
+            self._compilation.prepare((model,), self._progress)
+        else:
+            self._compilation.take_prepared(meshes)
         instance = self._add(replace(model, name=name), pose or model.pose, namespace)
         try:
             self._insert(instance)

@@ -579,3 +579,21 @@ def test_frames_inside_a_model_that_is_not_found_are_where_it_is():
         strict=False,
     )
     assert world.models[0].pose.position == (1, 2, 0)
+
+
+NESTED_STATIC = "<model name='wall'><static>{static}</static><link name='l'/></model>"
+
+
+@pytest.mark.parametrize(
+    ("inside", "whole", "links"),
+    [
+        (NESTED_STATIC.format(static=1), True, {"wall::l": True}),
+        (NESTED_STATIC.format(static=0), False, {"wall::l": False}),
+        (NESTED_STATIC.format(static=1) + "<link name='own'/>", False, {"wall::l": True, "own": False}),
+        (f"<model name='deep'>{NESTED_STATIC.format(static=1)}</model>", True, {"deep::wall::l": True}),
+    ],
+)
+def test_nested_models_are_static_by_themselves(inside, whole, links):
+    model = one_model(inside).models[0]
+    assert model.static is whole
+    assert {name: link.static for name, link in model.links.items()} == links

@@ -267,3 +267,20 @@ def test_an_arm_may_have_more_links_than_python_calls_functions_within_each_othe
     simulation = Simulation(world())
     name = simulation.spawn(urdf.parse(f"<robot name='long'>{links}{joints}</robot>"))
     assert simulation.instance(name).link(f"l{count}").pose.position[2] == pytest.approx(0.1 * count)
+
+
+def test_a_static_nested_model_stays_in_a_model_that_falls():
+    """What hangs on it by a joint hangs as well, and the rest falls."""
+    cube = "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision>"
+    link = f"<link name='{{}}'><pose>{{}} 0 0 0</pose>{cube}</link>"
+    joint = "<joint name='{}' type='fixed'><parent>{}</parent><child>{}</child></joint>"
+    wall = f"<model name='wall'><static>1</static>{link.format('l', '0 0 5')}</model>"
+    links = [link.format(name, place) for name, place in (("lamp", "0 0 4"), ("sign", "0 2 4"), ("stone", "3 0 4"))]
+    joints = [joint.format("j", "wall::l", "lamp"), joint.format("k", "sign", "wall::l")]
+    described = world(f"<model name='m'>{''.join((wall, *links, *joints))}</model>")
+    simulation = Simulation(described, warn=lambda line: None)
+    simulation.advance(SECOND // 2)
+    assert simulation.pose("m", "wall::l") == Pose((0, 0, 5))
+    assert simulation.pose("m", "lamp") == Pose((0, 0, 4))
+    np.testing.assert_allclose(simulation.pose("m", "sign").position, (0, 2, 4), atol=2e-3)
+    assert simulation.pose("m", "stone").position[2] == pytest.approx(4 - 9.8 / 8, abs=0.02)

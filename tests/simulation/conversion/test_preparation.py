@@ -8,6 +8,7 @@ from daidalos.simulation import Simulation
 from daidalos.simulation.conversion import preparation
 from daidalos.simulation.conversion.convex import content_key, convex_parts
 from daidalos.simulation.conversion.preparation import prepare_meshes
+from daidalos.simulation.errors import SimulationError
 
 
 @pytest.fixture
@@ -61,3 +62,24 @@ def test_an_interrupt_ends_the_work(rings, monkeypatch, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         prepare_meshes(rings.models, interrupt)
     assert not list((tmp_path / "cache").rglob("*.*"))
+
+
+def test_a_request_to_end_ends_the_work(rings, monkeypatch):
+    monkeypatch.setattr(preparation, "_CHECK_PERIOD", 1e-3)
+    asked = iter([False, True])
+    with pytest.raises(SimulationError, match="cancelled"):
+        prepare_meshes(rings.models, is_cancelled=lambda: next(asked))
+
+
+def test_spawning_reports_progress_and_takes_what_is_prepared(rings, monkeypatch):
+    monkeypatch.setattr(preparation, "REPORT_DELAY", 0.0)
+    monkeypatch.setattr(preparation, "_CHECK_PERIOD", 1e-3)
+    reports = []
+    simulation = Simulation(progress=lambda *report: reports.append(report))
+    ring, other = rings.models[:2]
+    simulation.spawn(ring)
+    assert reports[0] == (0, 1)
+    prepared = prepare_meshes([other])
+    monkeypatch.setattr("daidalos.simulation.conversion.assets.convex_parts", None)
+    simulation.spawn(other, meshes=prepared)
+    assert simulation.models == ("m0", "m1")

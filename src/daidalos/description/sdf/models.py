@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from daidalos.common.pose3 import Pose
@@ -80,7 +81,7 @@ class _ModelReader:
         for nested, merged in self._nested:
             prefix = "" if merged else f"{nested.name}::"
             place = self._graph.pose(nested.name, element)
-            links |= {prefix + n: _moved(link, prefix, place) for n, link in nested.links.items()}
+            links |= {prefix + n: _moved(link, prefix, place, nested.static) for n, link in nested.links.items()}
             joints |= {prefix + n: _renamed(joint, prefix, place) for n, joint in nested.joints.items()}
             plugins += [_scoped(plugin, prefix) for plugin in nested.plugins]
         _check_mimics(element, joints)
@@ -91,7 +92,7 @@ class _ModelReader:
             joints=joints,
             frames={name: self._graph.pose(name, element) for name in self._graph.names()},
             carriers=self._carriers(),
-            static=element.flag_of("static", default=False),
+            static=element.flag_of("static", default=False) or _all_static(links),
             self_collide=element.flag_of("self_collide", default=False),
             wind=element.flag_of("enable_wind", default=False),
             plugins=tuple(plugins),
@@ -203,8 +204,13 @@ class _ModelReader:
         return read_joint(element, self._context, own, self._graph.pose, self._link_of, ROOT)
 
 
-def _moved(link: Link, prefix: str, place: Pose) -> Link:
-    return replace(link, name=prefix + link.name, pose=place @ link.pose)
+def _moved(link: Link, prefix: str, place: Pose, static: bool) -> Link:
+    return replace(link, name=prefix + link.name, pose=place @ link.pose, static=static or link.static)
+
+
+def _all_static(links: Mapping[str, Link]) -> bool:
+    """Return whether a model consists of static nested models alone, as in worlds that wrap each ``<include>``."""
+    return bool(links) and all(link.static for link in links.values())
 
 
 def _renamed(joint: Joint, prefix: str, place: Pose) -> Joint:

@@ -9,15 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daidalos.common.pose3 import Pose, Vector
+from daidalos.description.gazebo import model_from_robot
 from daidalos.description.joint import JointType
+from daidalos.description.world import Model
 from daidalos.nodes.gazebo_ros._descriptions import read_entity
 from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
 from daidalos.simulation import Simulation
+from daidalos.simulation.conversion.preparation import Progress, prepare_meshes
 
 if TYPE_CHECKING:
     from daidalos.description.robot import Robot
-    from daidalos.description.world import Model, World
+    from daidalos.description.world import World
 
 _MAX_DELETED = 100
 _ONE_NUMBER = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
@@ -44,6 +47,10 @@ class Host:
         Makes a simulation of a world.
     topics_changed : callable
         Called with the simulation, between its steps, when models came or went.
+    progress : callable
+        Called with the number of collision meshes of a model that are ready, and of all of them.
+    is_ending : callable
+        Returns whether the process is asked to end, so that no model is prepared any more.
     """
 
     def __init__(
@@ -51,11 +58,15 @@ class Host:
         paced: PacedSimulation,
         make: Callable[[World], Simulation],
         topics_changed: Callable[[Simulation], None],
+        progress: Progress | None = None,
+        is_ending: Callable[[], bool] = lambda: False,
     ) -> None:
         self.paced = paced
         self.world_path: Path | None = None
         self._make = make
         self._changed = topics_changed
+        self._progress = progress
+        self._is_ending = is_ending
         self._saved: Any = None
         self._stepping = threading.Lock()
         self.spawned: set[str] = set()
@@ -81,21 +92,23 @@ class Host:
         namespace: str = "",
         rename: bool = False,
     ) -> str:
-        """Add a model; return the name that it got.
+        """Add a model; return the name that it got. Its meshes are prepared while the simulation goes on.
 
         Raises
         ------
         DescriptionError, SimulationError
         """
+        model = description if isinstance(description, Model) else model_from_robot(description)
+        meshes = prepare_meshes((model,), self._progress, self._is_ending)
 
         def work(simulation: Simulation) -> str:
             goal = pose
             if reference not in ("", "world", "map"):
                 entity = find_entity(simulation, reference)
                 goal = simulation.pose(entity.model, entity.link) @ pose
-            wanted = name or description.name
+            wanted = name or model.name
             unique = _unused(wanted, simulation.models) if rename else wanted
-            spawned = simulation.spawn(description, unique, goal, namespace)
+            spawned = simulation.spawn(model, unique, goal, namespace, meshes)
             self.spawned.add(spawned)
             self._changed(simulation)
             return spawned

@@ -135,7 +135,7 @@ class GzServer(Node):
         self._paced = connections.paced = PacedSimulation(
             simulation, self._publish, period_ns, factor, self._on_failure
         )
-        self._host = Host(self._paced, make, self._topics_changed)
+        self._host = Host(self._paced, make, self._topics_changed, self._report_loading, lambda: not self.context.ok())
         self._companions = Companions(self.context, self._warn)
         self._host.world_path = start.world
         self._clock_publisher = self.create_publisher(Clock, "/clock", 10)

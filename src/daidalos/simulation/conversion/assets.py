@@ -16,7 +16,7 @@ from daidalos.common.pose3 import Vector
 from daidalos.description.meshes import TriangleMesh
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.convex import content_key, convex_parts
-from daidalos.simulation.conversion.preparation import Parts, Progress, prepare_meshes
+from daidalos.simulation.conversion.preparation import PreparedMeshes, Progress, prepare_meshes
 
 MAX_HULL_VERTICES = 64
 _TERRAIN_THICKNESS = 1.0
@@ -50,11 +50,15 @@ class Assets:
         self._spec = spec
         self._users: Counter[str] = Counter()
         self._taken: list[str] = []
-        self._prepared: dict[tuple[str, bool], Parts] = {}
+        self._prepared: PreparedMeshes = {}
 
     def prepare(self, models: Iterable[Model], progress: Progress | None = None) -> None:
         """Prepare the collision meshes of models that are about to be added; see `prepare_meshes`."""
-        self._prepared = prepare_meshes(models, progress)
+        self.take_prepared(prepare_meshes(models, progress))
+
+    def take_prepared(self, meshes: PreparedMeshes) -> None:
+        """Take collision meshes that were prepared, in place of those of before."""
+        self._prepared = meshes
 
     def solid(self, mesh: TriangleMesh, decompose: bool) -> Solid:
         """Return the names of a mesh's convex parts and, where it differs from them, its surface.

@@ -69,13 +69,14 @@ class _Builder:
         self._warn = warn
         self._above: dict[str, Joint] = {}
         for joint in self._model.joints.values():
-            if joint.type is not JointType.GEARBOX and joint.child not in self._above and not self._closes_loop(joint):
+            taken = joint.type is JointType.GEARBOX or joint.child in self._above or self._is_static(joint.child)
+            if not taken and not self._closes_loop(joint):
                 self._above[joint.child] = joint
         self._below: dict[str, list[Joint]] = {}
         for joint in self._above.values():
             self._below.setdefault(joint.parent, []).append(joint)
         self._free = [link for link in self._model.links.values() if self._is_free(link)]
-        self._held = [link for link in self._free if any(isinstance(c.geometry, Plane) for c in link.collisions)]
+        self._held = [link for link in self._free if link.static or _has_plane(link)]
         self._solid_without_mass: set[str] = set()
         self._empty_without_mass: set[str] = set()
 
@@ -85,6 +86,10 @@ class _Builder:
         while link is not None and link != joint.child:
             link = self._above[link].parent if link in self._above else None
         return link == joint.child
+
+    def _is_static(self, link: str) -> bool:
+        """Return whether a link does not move, whatever pushes; the world is such a one."""
+        return link == "world" or self._model.links[link].static
 
     def run(self) -> None:
         self._find_weightless()
@@ -111,7 +116,8 @@ class _Builder:
             base = self._base()
             self._add_branches([(base, joint, False) for joint in in_world])
             for link in self._held:
-                self._warn(f"{link.where}: link {link.name!r} stays where it is, as an infinite plane cannot move")
+                if not link.static:
+                    self._warn(f"{link.where}: link {link.name!r} stays where it is, as an infinite plane cannot move")
                 self._add_link(base, link, link.pose)
                 self._add_children(link, moves=False)
         for link in self._free:
@@ -239,7 +245,7 @@ class _Builder:
         joint = self._above.get(link.name)
         try:
             disc = wheel_disc(joint, collision)
-            geoms = add_geoms(body, collision.geometry, collision.pose, self._assets, self._model.static)
+            geoms = add_geoms(body, collision.geometry, collision.pose, self._assets, self._model.static or link.static)
             if disc is not None:
                 geoms = [add_rolling(body, disc.radius, disc.width, disc.pose), *only_seen(self._build.spec, geoms)]
         except DescriptionError as problem:
@@ -278,7 +284,9 @@ class _Builder:
         for joint in self._model.joints.values():
             if joint.type is JointType.GEARBOX:
                 self._mesh_gears(joint)
-            elif self._above.get(joint.child) is not joint:
+            elif self._above.get(joint.child) is not joint and not (
+                self._is_static(joint.parent) and self._is_static(joint.child)
+            ):
                 self._close_loop(joint)
         for joint in self._model.joints.values():
             added = self._build.joints.get(joint.name)
@@ -307,3 +315,7 @@ class _Builder:
         child = self._build.bodies[joint.child]
         name = self._build.scoped(joint.name)
         self._build.joints[joint.name] = close_loop(self._build.spec, parent, child, joint, name)
+
+
+def _has_plane(link: Link) -> bool:
+    return any(isinstance(collision.geometry, Plane) for collision in link.collisions)

@@ -18,6 +18,7 @@ import numpy as np
 
 from daidalos.description.meshes import TriangleMesh
 from daidalos.simulation.conversion import decomposition
+from daidalos.simulation.conversion.decomposition import check_cancelled
 
 CONVEX_ENOUGH = 0.95
 """Volume ratio to its convex hull from which a mesh counts as convex."""
@@ -49,11 +50,18 @@ def convex_parts(
     parts : list of TriangleMesh
     concave : bool
         Whether they differ from the mesh.
+
+    Raises
+    ------
+    decomposition.Cancelled
     """
+    check_cancelled(is_cancelled)
     pieces = connected_pieces(mesh)
+    check_cancelled(is_cancelled)
     if not decompose and len(pieces) > MAX_HULLS:
         return [_hull(mesh.vertices)], True
     hulls = [_hull(piece.vertices) for piece in pieces]
+    check_cancelled(is_cancelled)
     convex = [_is_convex(piece, hull) for piece, hull in zip(pieces, hulls, strict=True)]
     if all(convex) or not decompose:
         return hulls, not all(convex)

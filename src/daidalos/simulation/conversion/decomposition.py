@@ -62,7 +62,7 @@ def decompose(mesh: TriangleMesh, is_cancelled: Callable[[], bool] = lambda: Fal
     mesh : TriangleMesh
         A surface, open or closed; lengths in metres.
     is_cancelled : callable
-        Asked before each cut.
+        Asked before each cut and each step before the first.
 
     Returns
     -------
@@ -78,14 +78,15 @@ def decompose(mesh: TriangleMesh, is_cancelled: Callable[[], bool] = lambda: Fal
     tolerance = max(min(max(least, share * extent), most), extent / _FINEST)
     overlap = _SPACING * tolerance
     surface = sample_surface(mesh, overlap)
+    check_cancelled(is_cancelled)
     points = np.concatenate((surface, _points_inside(surface, tolerance)))
+    check_cancelled(is_cancelled)
     planes = _face_planes(mesh, tolerance)
     order = itertools.count()
     heap = [_entry(points, tolerance, order)]
     done: list[Points] = []
     while heap and len(heap) + len(done) < MAX_PARTS:
-        if is_cancelled():
-            raise Cancelled
+        check_cancelled(is_cancelled)
         part = heapq.heappop(heap)[2]
         plane = _find_cut(part.points, planes, overlap) if part.concavity > tolerance else None
         if plane is None:
@@ -95,6 +96,12 @@ def decompose(mesh: TriangleMesh, is_cancelled: Callable[[], bool] = lambda: Fal
             half = part.points[part.points @ side[:3] - side[3] <= overlap]
             heapq.heappush(heap, _entry(half, tolerance, order))
     return done + [part.points for _, _, part in heap]
+
+
+def check_cancelled(is_cancelled: Callable[[], bool]) -> None:
+    """Raise `Cancelled` where it is so."""
+    if is_cancelled():
+        raise Cancelled
 
 
 def sample_surface(mesh: TriangleMesh, spacing: float) -> Points:

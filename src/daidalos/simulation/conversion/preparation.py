@@ -14,6 +14,7 @@ from daidalos.description.geometry import Cone, Geometry, Mesh, Polyline
 from daidalos.description.meshes import TriangleMesh, triangles_of
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.convex import content_key, convex_parts
+from daidalos.simulation.errors import SimulationError
 
 MAX_THREADS = 8
 REPORT_DELAY = 1.0
@@ -28,6 +29,9 @@ Progress = Callable[[int, int], None]
 Parts = tuple[list[TriangleMesh], bool]
 """What `convex_parts` returns."""
 
+PreparedMeshes = dict[tuple[str, bool], Parts]
+"""Convex parts of meshes, from each mesh's `content_key` and whether it was to be decomposed."""
+
 
 def is_decomposed(shape: Mesh | Cone | Polyline, static: bool) -> bool:
     """Return whether a shape is split into convex parts: a static one is, unless the description wishes otherwise."""
@@ -35,7 +39,9 @@ def is_decomposed(shape: Mesh | Cone | Polyline, static: bool) -> bool:
     return optimization == "convex_decomposition" or (static and optimization != "convex_hull")
 
 
-def prepare_meshes(models: Iterable[Model], progress: Progress | None = None) -> dict[tuple[str, bool], Parts]:
+def prepare_meshes(
+    models: Iterable[Model], progress: Progress | None = None, is_cancelled: Callable[[], bool] = lambda: False
+) -> PreparedMeshes:
     """Return the convex parts of all collision meshes of models.
 
     The work is done in threads, since most of it is sorting, hulls and searches in compiled code; the calling thread
@@ -46,11 +52,18 @@ def prepare_meshes(models: Iterable[Model], progress: Progress | None = None) ->
     models : iterable of Model
     progress : callable or None
         Called in this thread after a second, and then every two seconds.
+    is_cancelled : callable
+        Asked ten times a second in this thread.
 
     Returns
     -------
-    dict
-        From the mesh's `content_key` and whether it was to be decomposed. Meshes that can not be read are not in it.
+    PreparedMeshes
+        Meshes that can not be read are not in it.
+
+    Raises
+    ------
+    SimulationError
+        When it was cancelled.
     """
     shapes = list(dict.fromkeys(_shapes(models)))
     if not shapes:
@@ -59,7 +72,7 @@ def prepare_meshes(models: Iterable[Model], progress: Progress | None = None) ->
     pool = ThreadPoolExecutor(min(_cores(), MAX_THREADS, len(shapes)), "meshes")
     try:
         futures = [pool.submit(_prepare, shape, decompose, cancelled) for shape, decompose in shapes]
-        _wait(futures, progress)
+        _wait(futures, progress, is_cancelled)
         return dict(result for future in futures if (result := future.result()) is not None)
     finally:
         cancelled.set()
@@ -76,7 +89,7 @@ def _shapes(models: Iterable[Model]) -> Iterator[tuple[Geometry, bool]]:
         for link in model.links.values():
             for collision in link.collisions:
                 if isinstance(collision.geometry, Mesh):
-                    yield collision.geometry, is_decomposed(collision.geometry, model.static)
+                    yield collision.geometry, is_decomposed(collision.geometry, model.static or link.static)
 
 
 def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> tuple[tuple[str, bool], Parts] | None:
@@ -90,11 +103,17 @@ def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> tu
     return (key, decompose), convex_parts(mesh, key, decompose, cancelled.is_set)
 
 
-def _wait(futures: list[Future[tuple[tuple[str, bool], Parts] | None]], progress: Progress | None) -> None:
+def _wait(
+    futures: list[Future[tuple[tuple[str, bool], Parts] | None]],
+    progress: Progress | None,
+    is_cancelled: Callable[[], bool],
+) -> None:
     due = time.monotonic() + REPORT_DELAY
     waiting: set[Future[tuple[tuple[str, bool], Parts] | None]] = set(futures)
     while waiting:
         waiting = wait(waiting, _CHECK_PERIOD).not_done
+        if waiting and is_cancelled():
+            raise SimulationError("the preparation of the meshes of collisions was cancelled")
         if progress is not None and waiting and time.monotonic() >= due:
             progress(len(futures) - len(waiting), len(futures))
             due += REPORT_PERIOD
