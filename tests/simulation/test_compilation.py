@@ -15,7 +15,9 @@ def boxes(*names):
 
 
 def compilation():
-    return Compilation(World(), 1e-3, has_subscribers=lambda topic: True, warn=pytest.fail)
+    return Compilation(
+        World(), 1e-3, has_subscribers=lambda topic: True, can_draw=lambda topic, now: True, warn=pytest.fail
+    )
 
 
 def test_there_are_no_physics_before_the_first_compilation():

@@ -39,6 +39,8 @@ class Compilation:
         Of MuJoCo [s].
     has_subscribers : callable
         Returns whether anyone listens to a topic.
+    can_draw : callable
+        Returns whether there is time for a camera's picture; see `Simulation`.
     warn : callable
         Called with a line for each thing that is left out or changed.
 
@@ -57,7 +59,12 @@ class Compilation:
     """
 
     def __init__(
-        self, world: World, timestep: float, has_subscribers: Callable[[str], bool], warn: Callable[[str], None]
+        self,
+        world: World,
+        timestep: float,
+        has_subscribers: Callable[[str], bool],
+        can_draw: Callable[[str, int], bool],
+        warn: Callable[[str], None],
     ) -> None:
         self.spec: Any = mujoco.MjSpec()
         self._world = world
@@ -69,6 +76,7 @@ class Compilation:
         self._compiled_alone: Model | None = None
         self._assets = Assets(self.spec)
         self._has_subscribers = has_subscribers
+        self._can_draw = can_draw
         self._warn = warn
         self._physics: Physics | None = None
         set_options(self.spec, world, timestep)
@@ -191,7 +199,7 @@ class Compilation:
             for instance in self.instances.values()
             for geom, info in instance.build.geoms.items()
         }
-        self._physics = Physics(model, data, geoms, self._has_subscribers, self.stage, self.forces)
+        self._physics = Physics(model, data, geoms, self._has_subscribers, self.stage, self.forces, self._can_draw)
         self.forces.bind(self.instances)
         for instance in self.instances.values():
             instance.bind(self._physics)

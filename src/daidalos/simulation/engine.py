@@ -52,6 +52,7 @@ class Engine:
         has_subscribers: Callable[[str], bool] | None = None,
         warn: Callable[[str], None] | None = None,
         progress: Progress | None = None,
+        can_draw: Callable[[str, int], bool] = lambda topic, now_ns: True,
     ) -> None:
         self.world = World() if world is None else world
         self.seed = seed
@@ -66,7 +67,7 @@ class Engine:
         self._goal_ns = 0
         self._progress = progress
         self.step_ns, self._substeps = physics_step(self.world.physics)
-        self._compilation = Compilation(self.world, self._timestep, self._has_subscribers, self._warn)
+        self._compilation = Compilation(self.world, self._timestep, self._has_subscribers, can_draw, self._warn)
         for line in self.world.warnings:
             self._warn(line)
         check_world_plugins(self.world, self._warn)

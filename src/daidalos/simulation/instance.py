@@ -135,6 +135,10 @@ class Instance:
         """Return whether anyone listens to a topic."""
         return self.physics.has_subscribers(topic)
 
+    def can_draw(self, topic: str, now_ns: int) -> bool:
+        """Return whether there is time for the picture of a camera at a simulated time [ns]."""
+        return self.physics.can_draw(topic, now_ns)
+
     def link(self, name: str) -> LinkView:
         """Return a link by its name in the description.
 

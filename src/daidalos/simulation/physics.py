@@ -45,6 +45,8 @@ class Physics:
         What cameras see.
     forces : Forces
         What pushes from outside.
+    can_draw : callable
+        Returns whether there is time for a camera's picture; takes the camera's topic and the time [ns].
     """
 
     def __init__(
@@ -55,6 +57,7 @@ class Physics:
         has_subscribers: Callable[[str], bool],
         stage: Stage,
         forces: Forces,
+        can_draw: Callable[[str, int], bool],
     ) -> None:
         self.model = model
         self.data = data
@@ -62,6 +65,7 @@ class Physics:
         self.has_subscribers = has_subscribers
         self.stage = stage
         self.forces = forces
+        self.can_draw = can_draw
         self._warnings = data.warning.number  # a view
         self.changed()
 

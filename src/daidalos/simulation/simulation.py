@@ -44,6 +44,9 @@ class Simulation(Engine):
     progress : callable or None
         Called with the number of collision meshes that are ready, and of all of them, every two seconds while
         the world is loaded and models are spawned.
+    can_draw : callable
+        Called with the topic of a camera whose picture is due and the simulated time [ns]; the picture is dropped
+        where it returns False, which cameras that wait for a trigger do not ask.
 
     Raises
     ------

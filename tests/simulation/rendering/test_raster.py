@@ -17,7 +17,7 @@ def rasterise(vertices, faces, two_sided=True):
     radius = float(np.abs(vertices).max() * 2)
     draw(
         np.ones(1, dtype=bool), np.eye(4)[None, :3], np.array([[0.0, 0.0, 0.0, radius]]), np.array([[0, len(faces)]]),
-        np.array([[0, len(vertices)]]), np.full(1, two_sided), vertices, faces,
+        np.zeros(1, dtype=np.int64), np.array([[0, len(vertices)]]), np.full(1, two_sided), vertices, faces,
         planes_of(vertices[faces]), LENS, NEAR, FAR, np.zeros((len(vertices), PROJECTED)),
         np.zeros((len(faces), EDGES)), np.zeros(len(faces), dtype=bool), inverse, triangles,
     )  # fmt: skip

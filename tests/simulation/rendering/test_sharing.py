@@ -8,7 +8,7 @@ import pytest
 
 from daidalos.common.pose3 import Pose, quaternion_from_yaw
 from daidalos.description import sdf
-from daidalos.description.geometry import Box, Plane
+from daidalos.description.geometry import Box, Plane, Sphere
 from daidalos.description.link import Light, Visual
 from daidalos.samples.sensors import ImageSample
 from daidalos.simulation import Simulation
@@ -84,3 +84,22 @@ def test_the_scene_of_a_world_that_changed_is_freed() -> None:
     assert simulation.stage.scene is not old()
     gc.collect()
     assert old() is None
+
+
+def test_parts_of_one_shape_share_its_triangles() -> None:
+    """The picture is that of shapes of their own, which differ by nothing that is seen."""
+    places = [Pose((4.0, -1.0, 1.0)), Pose((5.0, 1.0, 0.5), quaternion_from_yaw(0.6)), Pose((6.0, 0.2, 1.5))]
+    alike = [Visual(Sphere(0.5), place) for place in places]
+    unlike = [Visual(Sphere(0.5 + 1e-7 * number), place) for number, place in enumerate(places)]
+    pictures = []
+    for visuals, most in ((alike, 0.4), (unlike, 1.0)):
+        ground = Visual(Plane(size=(200.0, 200.0)))
+        items = [Item(visual, 0, number, number + 1) for number, visual in enumerate([ground, *visuals])]
+        made = make_scene(items, pytest.fail)
+        assert len(made.faces) <= most * len(made.face_part)
+        camera = renderer()
+        view = camera.render(made, *STILL, NEAR)
+        assert set(np.unique(view.of_parts(made.labels))) == {0, 1, 2, 3, 4}
+        pictures.append((camera.paint(*STILL, SUN).copy(), view.of_parts(made.labels)))
+    np.testing.assert_allclose(pictures[0][0].astype(int), pictures[1][0], atol=1)
+    assert np.array_equal(pictures[0][1], pictures[1][1])

@@ -133,6 +133,19 @@ def test_nobody_listens_nobody_draws():
     assert [type(s) for s in simulation.advance(FRAME)] == [CameraInfoSample]
 
 
+def test_pictures_are_dropped_where_there_is_no_time():
+    asked = []
+
+    def can_draw(topic, now_ns):
+        asked.append((topic, now_ns))
+        return len(asked) % 2 == 0
+
+    simulation = Simulation(world(camera(size=(8, 8))), can_draw=can_draw)
+    drawn = [s.stamp_ns for s in simulation.advance(4 * FRAME + 1_000_000) if isinstance(s, ImageSample)]
+    assert [topic for topic, _ in asked] == ["/robot/eye/cam/image"] * 4
+    assert drawn == [now_ns for _, now_ns in asked[1::2]]
+
+
 PLUGIN = "<plugin name='p' filename='lib{}.so'>{}</plugin>"
 
 

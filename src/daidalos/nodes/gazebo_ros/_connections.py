@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.node import Node
 
 from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
+from daidalos.nodes.gazebo_ros._pictures import PictureBudget
 from daidalos.nodes.warming import warm_up_in_background
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ class Connections:
         self._warned: set[str] = set()
         self._drawn: set[str] = set()
         self._renderer_ready: threading.Event | None = None
+        self._pictures = PictureBudget(lambda: self.paced.lag_ns)
 
     def warn_once(self, text: str) -> None:
         """Log a warning unless it was logged before."""
@@ -67,6 +69,13 @@ class Connections:
         if self.paced.paused or self.paced.real_time_factor <= 0.0:
             self._renderer_ready.wait()
         return self._renderer_ready.is_set()
+
+    def has_time_to_draw(self, topic: str, now_ns: int) -> bool:
+        """Return whether a camera's picture is drawn; some are dropped while the world is late."""
+        allowed = self._pictures.allows(topic, now_ns)
+        if not allowed:
+            self.warn_once("cameras cannot keep up with the wanted speed; pictures are dropped")
+        return allowed
 
     def publish(self, samples: list[Sample]) -> None:
         """Publish what is listened to; transforms of the same step go into one message."""

@@ -50,6 +50,7 @@ class PacedSimulation:
         self._wake = threading.Condition()
         self._paused = False
         self._running = False
+        self._due = 0
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
         self.measured_factor = 0.0
 
@@ -57,6 +58,12 @@ class PacedSimulation:
     def paused(self) -> bool:
         """Whether the simulation is paused."""
         return self._paused
+
+    @property
+    def lag_ns(self) -> int:
+        """How far the simulation is behind real time [ns]; 0 where it is paused or as fast as it can."""
+        late = 0 if self._paused or self.real_time_factor <= 0.0 else time.monotonic_ns() - self._due
+        return max(late, 0)
 
     def start(self, *, paused: bool = False) -> None:
         """Start the thread."""
@@ -124,14 +131,14 @@ class PacedSimulation:
         return result[0]
 
     def _run(self) -> None:
-        due = time.monotonic_ns()
-        mark = (due, self.simulation.time_ns)
-        while self._wait_until(due):
+        self._due = time.monotonic_ns()
+        mark = (self._due, self.simulation.time_ns)
+        while self._wait_until(self._due):
             now = time.monotonic_ns()
             if self._paused:
-                due = now
+                self._due = now
                 continue
-            if now < due:
+            if now < self._due:
                 continue  # woken by a request
             try:
                 samples = self.simulation.advance(self._period_ns)
@@ -141,7 +148,7 @@ class PacedSimulation:
                 continue
             self._publish(self.simulation.time_ns, samples)
             mark = self._measure(mark)
-            due = self._next_due(due)
+            self._due = self._next_due(self._due)
 
     def _wait_until(self, due: int) -> bool:
         """Sleep until the next step is due or a request comes, and do what was requested; False at the end."""

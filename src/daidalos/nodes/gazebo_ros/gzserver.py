@@ -122,6 +122,7 @@ class GzServer(Node):
                 has_subscribers=connections.has_subscribers,
                 warn=self._warn,
                 progress=self._report_loading,
+                can_draw=connections.has_time_to_draw,
             )
 
         simulation = make(described)

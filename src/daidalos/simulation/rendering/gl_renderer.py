@@ -122,10 +122,9 @@ class GlRenderer:
     def _take(self, scene: Scene) -> None:
         """Upload a scene to the device."""
         self._scene = scene
-        vertex_part = np.repeat(np.arange(len(scene.body)), np.diff(scene.vertex_ranges, axis=1).ravel())
-        rows = np.concatenate((scene.vertices, scene.normals, scene.uv, vertex_part[:, None]), axis=1)
-        vertices = self._gl.buffer(rows.astype(np.float32).tobytes() or bytes(36))
-        faces = self._gl.buffer(np.ascontiguousarray(scene.faces).tobytes() or bytes(12))
+        rows, triangles = _drawn(scene)
+        vertices = self._gl.buffer(rows.tobytes() or bytes(36))
+        faces = self._gl.buffer(triangles.tobytes() or bytes(12))
         self._painter_array = self._gl.vertex_array(
             self._painter, [(vertices, "3f 3f 2f 1f", "place", "normal", "uv", "part")], faces
         )
@@ -206,6 +205,18 @@ class GlRenderer:
                 (0.0, 0.0, 1.0, 0.0),
             )
         )
+
+
+def _drawn(scene: Scene) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """Return the vertices of all parts, with normals, texture coordinates and part, and the triangles among them."""
+    counts = np.diff(scene.vertex_ranges, axis=1).ravel()
+    part = np.repeat(np.arange(len(scene.body)), counts)
+    moved = np.cumsum(counts) - counts - scene.vertex_ranges[:, 0]
+    vertex = np.arange(len(part)) - moved[part]
+    row = np.arange(len(scene.face_part)) + (scene.face_rows - scene.face_ranges[:, 0])[scene.face_part]
+    columns = (scene.vertices[vertex], scene.normals[vertex], scene.uv[vertex], part[:, None])
+    triangles = scene.faces[row] + moved[scene.face_part][:, None]
+    return np.concatenate(columns, axis=1, dtype=np.float32), np.ascontiguousarray(triangles, dtype=np.int32)
 
 
 def context() -> Any:

@@ -100,6 +100,7 @@ def draw(
     placed: Any,
     spheres: Any,
     face_ranges: Any,
+    face_rows: Any,
     vertex_ranges: Any,
     two_sided: Any,
     vertices: Any,
@@ -124,8 +125,12 @@ def draw(
         Poses of the parts in the camera's optical frame (z ahead, x right, y down).
     spheres : array (p, 4)
         Centre, in the part's frame, and radius of a ball around each part.
-    face_ranges, vertex_ranges : array (p, 2) of int
-        First and behind the last row in `faces` and `vertices`.
+    face_ranges : array (p, 2) of int
+        First triangle and the one behind the last, in numbers that count those of all parts.
+    face_rows : array (p,) of int
+        Row in `faces` of each part's first triangle; parts of one shape have the same.
+    vertex_ranges : array (p, 2) of int
+        First row in `vertices` and the one behind the last.
     two_sided : array (p,) of bool
         Whether triangles are seen from behind too.
     vertices : array (v, 3)
@@ -138,14 +143,14 @@ def draw(
         What is nearer or further is not drawn [m].
     projected : array (v, 5)
         Scratch: vertices in the camera's frame and in pixels.
-    edges : array (f, 9)
+    edges : array (t, 9)
         Written for every drawn triangle, see `EDGES`.
-    flipped : array (f,) of bool
+    flipped : array (t,) of bool
         Written for every drawn triangle: whether it is seen from behind.
     inverse : array (rows, columns) of float32
         Inverse depths [1/m]; begins with 1 / far.
     triangles : array (rows, columns) of int32
-        The row in `faces` that is seen.
+        The number of the triangle that is seen.
     """
     rows, columns = inverse.shape
     fx, fy, cx, cy = lens[0], lens[1], lens[2], lens[3]
@@ -161,10 +166,12 @@ def draw(
         ey = -(pose[0, 1] * pose[0, 3] + pose[1, 1] * pose[1, 3] + pose[2, 1] * pose[2, 3])
         ez = -(pose[0, 2] * pose[0, 3] + pose[1, 2] * pose[1, 3] + pose[2, 2] * pose[2, 3])
         both = two_sided[part]
+        shift = face_rows[part] - face_ranges[part, 0]
         for face in range(face_ranges[part, 0], face_ranges[part, 1]):
-            if not both and planes[face, 0] * ex + planes[face, 1] * ey + planes[face, 2] * ez <= planes[face, 3]:
+            at = face + shift
+            if not both and planes[at, 0] * ex + planes[at, 1] * ey + planes[at, 2] * ez <= planes[at, 3]:
                 continue
-            i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
+            i, j, k = faces[at, 0], faces[at, 1], faces[at, 2]
             z0, z1, z2 = projected[i, 2], projected[j, 2], projected[k, 2]
             if z0 < near and z1 < near and z2 < near:
                 continue

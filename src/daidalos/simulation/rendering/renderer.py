@@ -35,7 +35,7 @@ class View:
     inverse : array (rows, columns) of float32
         Inverse depth along the optical axis [1/m].
     triangles : array (rows, columns) of int32
-        Rows of the scene's faces; negative for nothing.
+        Numbers of the scene's triangles, as in `Scene.face_part`; negative for nothing.
     scene : Scene
     pool : Pool
         Where arrays for others come from.
@@ -60,7 +60,7 @@ class View:
 
 @dataclass(eq=False)
 class _Buffers:
-    """Arrays that depend on the scene's size, shared by all cameras that draw it, one after the other.
+    """Arrays that depend on the scene, shared by all cameras that draw it, one after the other.
 
     Parameters
     ----------
@@ -80,12 +80,14 @@ class _Buffers:
     projected: NDArray[np.float32] = field(init=False)
     edges: NDArray[np.float32] = field(init=False)
     flipped: NDArray[np.bool_] = field(init=False)
+    face_shift: NDArray[np.int64] = field(init=False)
 
     def __post_init__(self, scene: Scene) -> None:
         self.placed = np.zeros((len(scene.body), 3, 4))
         self.projected = np.zeros((len(scene.vertices), PROJECTED), dtype=np.float32)
-        self.edges = np.zeros((len(scene.faces), EDGES), dtype=np.float32)
-        self.flipped = np.zeros(len(scene.faces), dtype=np.bool_)
+        self.edges = np.zeros((len(scene.face_part), EDGES), dtype=np.float32)
+        self.flipped = np.zeros(len(scene.face_part), dtype=np.bool_)
+        self.face_shift = scene.face_rows - scene.face_ranges[:, 0]
         self.pool = Pool()
         self._images: dict[tuple[int, int, bool], tuple[NDArray[np.float32], NDArray[np.int32]]] = {}
 
@@ -166,9 +168,9 @@ class Renderer:
         scene, buffers = self._scene, self._buffers
         assert scene is not None
         draw(
-            wanted, buffers.placed, scene.spheres, scene.face_ranges, scene.vertex_ranges, scene.two_sided,
-            scene.vertices, scene.faces, scene.planes, self.pinhole.lens, self.near, self.far, buffers.projected,
-            buffers.edges, buffers.flipped, inverse, triangles,
+            wanted, buffers.placed, scene.spheres, scene.face_ranges, scene.face_rows, scene.vertex_ranges,
+            scene.two_sided, scene.vertices, scene.faces, scene.planes, self.pinhole.lens, self.near, self.far,
+            buffers.projected, buffers.edges, buffers.flipped, inverse, triangles,
         )  # fmt: skip
 
     def _shadow(
@@ -205,9 +207,9 @@ class Renderer:
         offset = np.zeros(2) if shadow is None else np.array((1.5, 1.0)) * shadow.texel
         colors = background_of(lighting)
         shade(
-            triangles, inverse, buffers.edges, buffers.flipped, scene.face_part, scene.faces, scene.normals, scene.uv,
-            buffers.placed, scene.colors, scene.emissions, scene.alphas, scene.texture_of, scene.atlas.texels,
-            scene.atlas.textures, scene.atlas.levels, self.pinhole.lens,
+            triangles, inverse, buffers.edges, buffers.flipped, scene.face_part, buffers.face_shift, scene.faces,
+            scene.normals, scene.uv, buffers.placed, scene.colors, scene.emissions, scene.alphas, scene.texture_of,
+            scene.atlas.texels, scene.atlas.textures, scene.atlas.levels, self.pinhole.lens,
             np.array([color[:3] for color in colors], dtype=np.float32), np.ascontiguousarray(eye[2, :3]),
             np.array(lighting.ambient[:3], dtype=np.float32), -(view[:, :3] @ direction),
             np.zeros(3, dtype=np.float32) if sun is None else light_color(sun[0]), light_table(lights, view),

@@ -48,7 +48,7 @@ class Item:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Triangles of n parts: v vertices and f faces in concatenated arrays.
+    """Triangles of n parts; parts of the same shape, such as those of equal robots, share v vertices and f faces.
 
     Parameters
     ----------
@@ -58,13 +58,19 @@ class Scene:
     faces : array (f, 3) of int32
     planes : array (f, 4) of float32
         Normal of each triangle, of any length, and its scalar product with the triangle's points.
-    face_part : array (f,) of int32
+    face_part : array (t,) of int32
+        The part of each triangle, where those of all parts are counted one after the other.
     body : array (n,) of int64
     pose : array (n, 3, 4)
         Of each part in its body.
     spheres : array (n, 4)
         Centre and radius of a ball around each part, in its frame.
-    face_ranges, vertex_ranges : array (n, 2) of int64
+    face_ranges : array (n, 2) of int64
+        First triangle of each part, and the one behind its last, in the order of `face_part`.
+    face_rows : array (n,) of int64
+        Row in `faces` of each part's first triangle.
+    vertex_ranges : array (n, 2) of int64
+        First row in `vertices` of each part, and the one behind its last.
     two_sided, opaque, visible, casts : array (n,) of bool
     colors, emissions : array (n, 3) of float32
     alphas : array (n,) of float32
@@ -87,6 +93,7 @@ class Scene:
     pose: Array
     spheres: Array
     face_ranges: NDArray[np.int64]
+    face_rows: NDArray[np.int64]
     vertex_ranges: NDArray[np.int64]
     two_sided: NDArray[np.bool_]
     opaque: NDArray[np.bool_]
@@ -129,25 +136,26 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
         pairs += [(item, part) for part in parts if len(part.faces)]
     images: dict[int, NDArray[np.uint8]] = {id(p.texture): p.texture for _, p in pairs if p.texture is not None}
     numbers = {key: number for number, key in enumerate(images)}
-    vertex_ends = np.cumsum([len(part.vertices) for _, part in pairs], dtype=np.int64)
-    face_ends = np.cumsum([len(part.faces) for _, part in pairs], dtype=np.int64)
-    vertex_starts = np.concatenate(([0], vertex_ends[:-1])).astype(np.int64)[: len(pairs)]
-    face_starts = np.concatenate(([0], face_ends[:-1])).astype(np.int64)[: len(pairs)]
+    shapes = list({id(part): part for _, part in pairs}.values())
+    shape_of = _numbers([id(shape) for shape in shapes], [id(part) for _, part in pairs])
+    vertex_ranges = _ranges([len(shape.vertices) for shape in shapes])
+    face_ranges = _ranges([len(part.faces) for _, part in pairs])
     alphas = np.array([part.color[3] for _, part in pairs], dtype=np.float32)
-    uvs = (np.zeros((len(part.vertices), 2), dtype=np.float32) if part.uv is None else part.uv for _, part in pairs)
-    faces = (part.faces + start for (_, part), start in zip(pairs, vertex_starts, strict=True))
+    uvs = (np.zeros((len(part.vertices), 2), dtype=np.float32) if part.uv is None else part.uv for part in shapes)
+    faces = (part.faces + first for part, (first, _) in zip(shapes, vertex_ranges, strict=True))
     return Scene(
-        vertices=_stack((part.vertices for _, part in pairs), 3, np.float32),
-        normals=_stack((part.normals for _, part in pairs), 3, np.float32),
+        vertices=_stack((part.vertices for part in shapes), 3, np.float32),
+        normals=_stack((part.normals for part in shapes), 3, np.float32),
         uv=_stack(uvs, 2, np.float32),
         faces=_stack(faces, 3, np.int32),
-        planes=_stack((_planes(part) for _, part in pairs), 4, np.float32),
-        face_part=np.repeat(np.arange(len(pairs), dtype=np.int32), face_ends - face_starts),
+        planes=_stack((_planes(part) for part in shapes), 4, np.float32),
+        face_part=np.repeat(np.arange(len(pairs), dtype=np.int32), np.diff(face_ranges).ravel()),
         body=np.array([item.body for item, _ in pairs], dtype=np.int64),
         pose=np.array([item.visual.pose.matrix[:3] for item, _ in pairs]).reshape(-1, 3, 4),
         spheres=np.array([_ball(part.vertices) for _, part in pairs]).reshape(-1, 4),
-        face_ranges=np.stack((face_starts, face_ends), axis=1),
-        vertex_ranges=np.stack((vertex_starts, vertex_ends), axis=1),
+        face_ranges=face_ranges,
+        face_rows=_ranges([len(shape.faces) for shape in shapes])[shape_of, 0],
+        vertex_ranges=vertex_ranges[shape_of],
         two_sided=np.array([_open(item, part) for item, part in pairs], dtype=np.bool_),
         opaque=alphas >= 1.0,
         visible=alphas > 0.0,
@@ -161,6 +169,18 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
         owners=np.array([item.owner for item, _ in pairs], dtype=np.int32),
         atlas=make_atlas(list(images.values())),
     )
+
+
+def _ranges(counts: list[int]) -> NDArray[np.int64]:
+    """Return the first row and the one behind the last (n, 2) of blocks that lie one behind the other."""
+    ends = np.cumsum(counts, dtype=np.int64)
+    return np.stack((ends - np.array(counts, dtype=np.int64), ends), axis=1)
+
+
+def _numbers(known: list[int], keys: list[int]) -> NDArray[np.int64]:
+    """Return the places (n,) of keys among known ones."""
+    places = {key: place for place, key in enumerate(known)}
+    return np.array([places[key] for key in keys], dtype=np.int64)
 
 
 @lru_cache(maxsize=512)

@@ -30,6 +30,7 @@ def shade(
     edges: Any,
     flipped: Any,
     face_part: Any,
+    face_shift: Any,
     faces: Any,
     normals: Any,
     uv: Any,
@@ -61,8 +62,10 @@ def shade(
     ----------
     triangles, inverse, edges, flipped
         As `raster.draw` left them.
-    face_part : array (f,) of int
+    face_part : array (t,) of int
         The part that each triangle belongs to.
+    face_shift : array (p,) of int
+        What is added to the number of a triangle of each part for its row in `faces`.
     faces : array (f, 3) of int
     normals : array (v, 3)
         In the parts' frames.
@@ -132,7 +135,8 @@ def shade(
             sx = turn * (pose[0, 0] * sun[0] + pose[1, 0] * sun[1] + pose[2, 0] * sun[2])
             sy = turn * (pose[0, 1] * sun[0] + pose[1, 1] * sun[1] + pose[2, 1] * sun[2])
             sz = turn * (pose[0, 2] * sun[0] + pose[1, 2] * sun[1] + pose[2, 2] * sun[2])
-            i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
+            at = face + face_shift[part]
+            i, j, k = faces[at, 0], faces[at, 1], faces[at, 2]
             g0 = max(0.0, normals[i, 0] * sx + normals[i, 1] * sy + normals[i, 2] * sz)
             g1 = max(0.0, normals[j, 0] * sx + normals[j, 1] * sy + normals[j, 2] * sz)
             g2 = max(0.0, normals[k, 0] * sx + normals[k, 1] * sy + normals[k, 2] * sz)
@@ -187,7 +191,7 @@ def shade(
                             ab + shine * (sb - ab), alpha)  # fmt: skip
                 elif not plain:
                     paint_rich(
-                        line, depths, first, last, row, face, part, dy, turn, edges, faces, normals, uv, pose, colors,
+                        line, depths, first, last, row, e, i, j, k, part, dy, turn, normals, uv, pose, colors,
                         emissions, alpha, texture_of, texels, texture_levels, levels, fx, cx, ambient, sun_color,
                         lights, slope, base, rise, foot, dark, shadow, aim,
                     )  # fmt: skip
@@ -217,12 +221,13 @@ def paint_rich(
     first: Any,
     last: Any,
     row: Any,
-    face: Any,
+    e: Any,
+    i: Any,
+    j: Any,
+    k: Any,
     part: Any,
     dy: Any,
     turn: Any,
-    edges: Any,
-    faces: Any,
     normals: Any,
     uv: Any,
     pose: Any,
@@ -247,10 +252,8 @@ def paint_rich(
     aim: Any,
 ) -> None:
     """Shade the pixels of one triangle with a texture, or with point lights and spot lights."""
-    e = edges[face]
     a0, a1, a2 = e[0], e[3], e[6]
     r0, r1, r2 = e[1] * row + e[2], e[4] * row + e[5], e[7] * row + e[8]
-    i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
     texture = texture_of[part]
     ua = ur = va = vr = 0.0
     level = 0

@@ -211,7 +211,7 @@ class ShadowMap:
 
 @dataclass(frozen=True, eq=False)
 class Shapes:
-    """Shadow casters: triangles of the parts of a scene."""
+    """Shadow casters: triangles of the parts of a scene, whose ranges are rows of `faces` and `vertices`."""
 
     vertices: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.float32))
     faces: NDArray[np.int32] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int32))
@@ -232,10 +232,10 @@ def simplify(scene: Scene, cell: float) -> Shapes:
     cell : float
         Side of a cube [m].
     """
-    part = np.repeat(np.arange(len(scene.body)), np.diff(scene.vertex_ranges, axis=1).ravel())
+    shape = np.searchsorted(np.unique(scene.vertex_ranges[:, 0]), np.arange(len(scene.vertices)), side="right")
     cubes = np.floor(scene.vertices / cell).astype(np.int64)
-    _, first, place = np.unique(_hash(part, *cubes.T), return_index=True, return_inverse=True)
-    # In the old order, so that parts lie behind one another still.
+    _, first, place = np.unique(_hash(shape, *cubes.T), return_index=True, return_inverse=True)
+    # In the old order, so that shapes lie behind one another still.
     kept, rank = np.sort(first), np.empty(len(first), dtype=np.int32)
     rank[np.argsort(first)] = np.arange(len(first), dtype=np.int32)
     faces = rank[place.ravel()][scene.faces].reshape(-1, 3)
@@ -246,7 +246,7 @@ def simplify(scene: Scene, cell: float) -> Shapes:
         vertices,
         faces[whole],
         planes_of(vertices[faces[whole]].astype(np.float64)).astype(np.float32),
-        before[scene.face_ranges],
+        before[(scene.face_ranges.T - scene.face_ranges[:, 0] + scene.face_rows).T],
         np.searchsorted(kept, scene.vertex_ranges),
     )
 

@@ -141,11 +141,14 @@ class Camera(Sensor):
         return self.measure(now_ns)
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Render the outputs that have subscribers."""
+        """Render the outputs that have subscribers, unless there is no time for it."""
         has_subscribers = self.instance.has_subscribers
+        drawn = None
         for number, output in enumerate(self.outputs):
             wanted = {topic for topic in output.topics() if has_subscribers(topic)}
-            if wanted:
+            if drawn is None and wanted - set(output.infos):
+                drawn = self.trigger is not None or self.instance.can_draw(self.topic, now_ns)
+            if wanted and drawn is not False:
                 yield from self._capture(number, output, wanted, now_ns)
 
     def _output(self, element: Element, several: bool) -> CameraOutput:
