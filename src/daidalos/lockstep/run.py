@@ -10,6 +10,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from daidalos import lockstep
 from daidalos.lockstep import patching
 from daidalos.lockstep.programs import Program
 from daidalos.lockstep.scheduler import Owner, Scheduler
@@ -41,6 +42,8 @@ class Run:
         self._next_collection = _COLLECT_NS
         self._interrupts = 0
         self._ident = patching.real_thread_ident()
+        self._begun_s = patching.real_monotonic()
+        lockstep.current_run = self
         gc.disable()
         self.scheduler.on_advance = self._on_advance
         patching.install(
@@ -61,6 +64,11 @@ class Run:
         program = Program(self.scheduler, body, argv, seed, **options)
         self.programs.append(program)
         return program
+
+    @property
+    def elapsed_s(self) -> tuple[float, float]:
+        """Simulated and real time [s] since the start of the run."""
+        return 1e-9 * self.scheduler.now_ns, patching.real_monotonic() - self._begun_s
 
     def go(self) -> None:
         """Run until nothing is left to do.

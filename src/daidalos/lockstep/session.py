@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
@@ -48,6 +49,42 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     if until_s is not None:
         run.scheduler.spawn(lambda: _end_at(run, program, until_s), run.programs[0], "--until")
     return program
+
+
+class Child:
+    """Program that another one starts beside itself, with methods of `subprocess.Popen`.
+
+    Parameters
+    ----------
+    run : Run
+    command : list of str
+        The command line.
+    on_output : callable
+        Takes 1 or 2 and the bytes that it writes.
+
+    Raises
+    ------
+    LockstepError
+        When the command is not a program of this Python.
+    """
+
+    def __init__(self, run: Run, command: list[str], on_output: Callable[[int, bytes], None]) -> None:
+        self._program = _program(run, command, on_output)
+        self._ended = threading.Event()
+        self._program.on_exit.append(lambda status: self._ended.set())
+        self._program.start()
+
+    def poll(self) -> int | None:
+        """Return its exit status, None while it runs."""
+        return self._program.status
+
+    def send_signal(self, number: int) -> None:
+        """Send it a signal."""
+        self._program.send_signal(number)
+
+    def wait(self) -> None:
+        """Wait for its end."""
+        self._ended.wait()
 
 
 def _program(run: Run, command: list[str], on_output: Callable[[int, bytes], None] | None = None) -> Program:

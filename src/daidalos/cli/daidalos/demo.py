@@ -11,20 +11,26 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daidalos import lockstep
 from daidalos.cli.daidalos.overlays import leave_overlays
+from daidalos.common.errors import UserError
+from daidalos.lockstep import options
 from daidalos.workspaces.orphans import guard
 
 if TYPE_CHECKING:
-    from daidalos.nodes.daidalos_demo._measuring import Load
+    from daidalos.lockstep.run import Run
+    from daidalos.lockstep.session import Child
+    from daidalos.nodes.daidalos_demo._measuring import Load, LoadRecorder
     from daidalos.nodes.daidalos_demo.trial import TrialReport
 
 EPILOG = """It is nothing but `ros2 launch daidalos_demo demo.launch.py`; copy that file to begin a robot of
 your own. With --headless the robot gets three goals all over the arena and its driving is measured: the exit
-status is 0 only if it reached them all and touched nothing."""
+status is 0 only if it reached them all and touched nothing. With --lockstep the same seed gives the same drive,
+bit for bit."""
 
 _LAUNCH = ("daidalos_demo", "demo.launch.py")
 _TRIAL_DOMAIN = 97
@@ -43,10 +49,16 @@ class DemoVerb:
         parser.add_argument("--json", action="store_true", help="print the report as JSON, headless")
         parser.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
         parser.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
+        options.add_arguments(parser, seed=False)
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run the demonstration."""
+        options.check(args, seed=False)
+        if args.lockstep and not args.headless:
+            raise UserError("--lockstep needs --headless: a browser follows the real time")
         leave_overlays()
+        if args.lockstep:
+            return _restart_in_lockstep(args)
         return _try_out(args) if args.headless else _show(args)
 
 
@@ -67,41 +79,88 @@ def _show(arguments: argparse.Namespace) -> int:
     return run_launch(IncludeLaunchDescription(source, launch_arguments=list(settings.items())))
 
 
+def _restart_in_lockstep(arguments: argparse.Namespace) -> int:
+    """Run the same command in place of this process, with all that it launches, under the stepped clock."""
+    from daidalos.lockstep.start import replace_process
+
+    words = ["--headless", "--seed", str(arguments.seed), "--goals", str(arguments.goals)]
+    return replace_process(
+        ["daidalos", "demo", *words, *(["--json"] if arguments.json else [])], options.Options.of(arguments)
+    )
+
+
 def _try_out(arguments: argparse.Namespace) -> int:
     """Launch without the studio, run the test drive and report its results."""
-    from daidalos.nodes.daidalos_demo._measuring import LoadRecorder
-
     # A domain of its own: the trial neither disturbs nor is disturbed by what runs beside it.
     os.environ.setdefault("ROS_DOMAIN_ID", str(_TRIAL_DOMAIN))
-    with _launched(arguments.seed) as (process, log):
-        load = LoadRecorder(process.pid)
-        load.start()
-        with _progress(arguments.json) as say:
+    run = lockstep.current_run
+    launched = _launched(arguments.seed) if run is None else _launched_in(run, arguments.seed)
+    with launched as (process, log):
+        load = _load_recorder(process)
+        with _progress(arguments.json or run is not None) as say:
             report = _run_trial(arguments, say, process)
-        used = load.stop()
+        used = load.stop() if load is not None else None
     if report is None:
-        print(f"daidalos demo: the robot did not start; see {log}", file=sys.stderr)
+        what = "the robot did not start" if run is None else "the run ended before the drive did"
+        print(f"daidalos demo: {what}; see {log}", file=sys.stderr)
         print(_last_lines(log), file=sys.stderr)
         return 2
     log.unlink(missing_ok=True)
+    if run is not None:
+        simulated, real = run.elapsed_s
+        report = replace(report, real_time_factor=simulated / real)
     _print_json(report, used) if arguments.json else _print_table(report, used)
     return 0 if report.passed else 1
+
+
+def _load_recorder(process: subprocess.Popen[bytes] | Child) -> LoadRecorder | None:
+    """Return a started recorder of what a child process costs; None for one in lock-step, which has none of its own."""
+    if not isinstance(process, subprocess.Popen):
+        return None
+    from daidalos.nodes.daidalos_demo._measuring import LoadRecorder
+
+    load = LoadRecorder(process.pid)
+    load.start()
+    return load
 
 
 @contextlib.contextmanager
 def _launched(seed: int) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
     """Run the demo's launch file; its output goes to a file."""
-    handle, name = tempfile.mkstemp(prefix="daidalos-demo-", suffix=".log")
-    chosen = ["studio:=false", "look_around:=false", f"seed:={seed}"]
-    command = [sys.executable, "-m", "daidalos.cli.ros2", "launch", *_LAUNCH, *chosen]
+    handle, log = _log_file()
+    command = [sys.executable, "-m", "daidalos.cli.ros2", *_launch_words(seed)]
     with os.fdopen(handle, "wb") as output:
         process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
     guard.watch(process.pid)
     try:
-        yield process, Path(name)
+        yield process, log
     finally:
         _end(process)
         guard.release(process.pid)
+
+
+@contextlib.contextmanager
+def _launched_in(run: Run, seed: int) -> Iterator[tuple[Child, Path]]:
+    """Run the demo's launch file as a program of a lock-step run; its output goes to a file."""
+    from daidalos.lockstep.session import Child
+
+    handle, log = _log_file()
+    with os.fdopen(handle, "wb") as output:
+        child = Child(run, ["ros2", *_launch_words(seed)], lambda fd, data: output.write(data))
+        try:
+            yield child, log
+        finally:
+            child.send_signal(signal.SIGINT)
+            child.wait()
+
+
+def _log_file() -> tuple[int, Path]:
+    handle, name = tempfile.mkstemp(prefix="daidalos-demo-", suffix=".log")
+    return handle, Path(name)
+
+
+def _launch_words(seed: int) -> list[str]:
+    return ["launch", *_LAUNCH, "studio:=false", "look_around:=false", f"seed:={seed}"]
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
@@ -130,7 +189,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 def _run_trial(
-    arguments: argparse.Namespace, say: Callable[[str], None], launch: subprocess.Popen[bytes]
+    arguments: argparse.Namespace, say: Callable[[str], None], launch: subprocess.Popen[bytes] | Child
 ) -> TrialReport | None:
     """Return the report, None if the launch ended before."""
     import rclpy
@@ -180,12 +239,12 @@ def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
         yield say
 
 
-def _print_json(report: TrialReport, used: Load) -> None:
-    summary: dict[str, Any] = asdict(report) | asdict(used) | {"passed": report.passed}
+def _print_json(report: TrialReport, used: Load | None) -> None:
+    summary: dict[str, Any] = asdict(report) | (asdict(used) if used else {}) | {"passed": report.passed}
     print(json.dumps(summary))
 
 
-def _print_table(report: TrialReport, used: Load) -> None:
+def _print_table(report: TrialReport, used: Load | None) -> None:
     from rich.console import Console
     from rich.table import Table
 
@@ -208,8 +267,12 @@ def _print_table(report: TrialReport, used: Load) -> None:
         console.print(f"map: {report.map.width} x {report.map.height} cells of {report.map.resolution_m:g} m, {shares}")
     console.print(
         f"localization: {1000 * report.localization_rmse_m:.0f} mm rms, "
-        f"real-time factor {report.real_time_factor:.2f}, {used.cpu_percent:.0f} % of a core, "
-        f"{used.peak_rss_mb:.0f} MB in {used.processes} processes"
+        f"real-time factor {report.real_time_factor:.2f}"
+        + (
+            f", {used.cpu_percent:.0f} % of a core, {used.peak_rss_mb:.0f} MB in {used.processes} processes"
+            if used
+            else ""
+        )
     )
 
 
