@@ -37,8 +37,36 @@ _ONCE_A_PROCESS: dict[str, dict[str, Callable[[], Any]]] = {
 }
 """Variables of modules that are a process's own, with functions that create their first values."""
 
+_VARIABLES = (
+    *(("sys", name) for name in ("argv", "path", "stdout", "stderr", "excepthook")),
+    ("threading", "excepthook"),
+    *((module, name) for module, names in _ONCE_A_PROCESS.items() for name in names),
+)
+"""Modules and names of a program's own variables; `Program` creates their first values in this order."""
 
 _real_chdir = os.chdir
+
+
+class _Places:
+    """Where a program's own variables are, in the modules that are loaded by now."""
+
+    def __init__(self) -> None:
+        self._found: list[tuple[int, dict[str, Any], str]] = []
+        self._modules = 0
+
+    def loaded(self) -> list[tuple[int, dict[str, Any], str]]:
+        """Return the numbers of the variables, the dictionaries that hold them, and their names."""
+        if len(sys.modules) != self._modules:
+            self._modules = len(sys.modules)
+            self._found = [
+                (number, vars(sys.modules[module]), name)
+                for number, (module, name) in enumerate(_VARIABLES)
+                if module in sys.modules and name in vars(sys.modules[module])
+            ]
+        return self._found
+
+
+_places = _Places()
 
 
 class Terminated(BaseException):
@@ -122,17 +150,9 @@ class Program(Owner):
         self._pending: list[int] = []
         self._main: Thread | None = None
         streams = (sys.stdout, sys.stderr) if on_output is None else tuple(_stream(on_output, fd) for fd in (1, 2))
-        self._state: dict[tuple[str, str], Any] = {
-            ("sys", "argv"): list(argv),
-            ("sys", "path"): list(sys.path),
-            ("sys", "stdout"): streams[0],
-            ("sys", "stderr"): streams[1],
-            ("sys", "excepthook"): sys.__excepthook__,
-            ("threading", "excepthook"): threading.__excepthook__,
-        }
-        for module, variables in _ONCE_A_PROCESS.items():
-            for variable, create in variables.items():
-                self._state[module, variable] = create()
+        first = [list(argv), list(sys.path), *streams, sys.__excepthook__, threading.__excepthook__]
+        created = [create() for variables in _ONCE_A_PROCESS.values() for create in variables.values()]
+        self._values: list[Any] = [*first, *created]
         self._log_output: dict[str, Any] | None = None
         self._module = ModuleType("__main__")
 
@@ -230,10 +250,9 @@ class Program(Owner):
 
     def enter(self) -> None:
         """Install the program's state."""
-        for (module, variable), value in self._state.items():
-            loaded = sys.modules.get(module)
-            if loaded is not None:
-                setattr(loaded, variable, value)
+        values = self._values
+        for number, variables, name in _places.loaded():
+            variables[name] = values[number]
         os.environ._data = self._environ  # type: ignore[attr-defined]
         sys.modules["__main__"] = self._module
         if Program._present_folder != self._folder:
@@ -244,10 +263,9 @@ class Program(Owner):
 
     def leave(self) -> None:
         """Save the program's state."""
-        for module, variable in self._state:
-            loaded = sys.modules.get(module)
-            if loaded is not None:
-                self._state[module, variable] = getattr(loaded, variable)
+        values = self._values
+        for number, variables, name in _places.loaded():
+            values[number] = variables[name]
         self._module = sys.modules["__main__"]
         self._folder = Program._present_folder
         self._swap_log_output(install=False)

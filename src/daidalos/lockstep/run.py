@@ -40,6 +40,7 @@ class Run:
         self._handlers: dict[int, Any] = {}
         self._main_thread = threading.main_thread()
         self._next_collection = _COLLECT_NS
+        self._is_frozen = False
         self._interrupts = 0
         self._ident = patching.real_thread_ident()
         self._begun_s = patching.real_monotonic()
@@ -107,7 +108,13 @@ class Run:
     def _on_advance(self, before_ns: int) -> None:
         if self.scheduler.now_ns >= self._next_collection:
             self._next_collection = self.scheduler.now_ns + _COLLECT_NS
-            gc.collect()
+            # What is there at first stays: modules, nodes, parameters. To look through it takes a quarter of a second.
+            if self._is_frozen:
+                gc.collect()
+            else:
+                self._is_frozen = True
+                gc.collect()
+                gc.freeze()
 
     def _watch(self) -> None:
         """Name the callback that does not hand on; in a real thread."""

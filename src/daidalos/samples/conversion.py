@@ -128,19 +128,20 @@ def nested_message(message: Any, value: Any) -> Any:
     value : object
         A message of the class, a dataclass with fields of equal names, or numbers in the order of the fields.
     """
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    elif isinstance(value, message):
-        return value
-    elif is_dataclass(value):
-        kind: Any = type(value)
-        return _by_names(message, kind)(value)
-    return message(**dict(zip(message._fields_and_field_types, value, strict=True)))
+    return _nested(message, type(value))(value)
 
 
 @cache
-def _by_names(message: Any, kind: Any) -> Callable[[Any], Any]:
-    return _writer(message, {}, _names(kind))
+def _nested(message: Any, kind: type) -> Callable[[Any], Any]:
+    """Return the function that makes a message of a class from a value of another class."""
+    if issubclass(kind, message):
+        return lambda value: value
+    if is_dataclass(kind):
+        return _writer(message, {}, _names(kind))
+    names = tuple(message._fields_and_field_types)
+    if issubclass(kind, np.ndarray):
+        return lambda value: message(**dict(zip(names, value.tolist(), strict=True)))
+    return lambda value: message(**dict(zip(names, value, strict=True)))
 
 
 def _reader(kind: type, message: Any, sources: Mapping[str, Source]) -> Callable[[Any], Any]:

@@ -14,6 +14,9 @@ from daidalos.samples.sensors import Contact
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.physics import Physics
 
+_MINE, _OTHER = 1, 3
+"""Numbers of a watched model's geoms and of those that count; no other sum of two is that of both."""
+
 
 @dataclass(frozen=True)
 class Touch:
@@ -78,19 +81,22 @@ class ContactMonitor:
     def bind(self, physics: Physics) -> None:
         """Update the geoms after a compilation."""
         self._geoms = physics.geoms
-        self._mine = np.zeros(physics.model.ngeom, dtype=bool)
-        self._counts = np.zeros(physics.model.ngeom, dtype=bool)
+        self._sides = np.zeros(physics.model.ngeom, dtype=np.int8)
         for geom, (name, _) in self._geoms.items():
-            self._mine[geom] = name == self.instance.name
-            self._counts[geom] = name != self.instance.name and name not in self._ignore
+            self._sides[geom] = _MINE if name == self.instance.name else 0 if name in self._ignore else _OTHER
 
     def record(self, data: Any, now_ns: int) -> None:
         """Record the contacts of the step that was just made."""
-        first, second = data.contact.geom.T
-        here = (self._mine[first] & self._counts[second]) | (self._mine[second] & self._counts[first])
-        for index in np.flatnonzero(here & (data.contact.dist < 0)):
-            mine, other = int(first[index]), int(second[index])
-            if not self._mine[mine]:
+        if not data.ncon:
+            return
+        contact = data.contact
+        sides = self._sides[contact.geom]
+        here = sides[:, 0] + sides[:, 1] == _MINE + _OTHER
+        if not here.any():
+            return
+        for index in np.flatnonzero(here & (contact.dist < 0)):
+            mine, other = (int(geom) for geom in contact.geom[index])
+            if self._sides[mine] != _MINE:
                 mine, other = other, mine
             other_model, info = self._geoms[other]
             key = (self._geoms[mine][1].link, other_model, info.link)

@@ -31,8 +31,8 @@ class LinkView:
         """Current pose of the link in the world."""
         self.physics.refresh_positions()
         data = self.physics.data
-        x, y, z = (float(value) for value in data.xpos[self.body])
-        qw, qx, qy, qz = (float(value) for value in data.xquat[self.body])
+        x, y, z = data.xpos[self.body].tolist()
+        qw, qx, qy, qz = data.xquat[self.body].tolist()
         return Pose((x, y, z), (qx, qy, qz, qw))
 
     @property
@@ -44,7 +44,7 @@ class LinkView:
 
     def velocity(self) -> tuple[Array, Array]:
         """Return linear velocity of the link's origin and angular velocity, in world axes."""
-        self.physics.refresh()
+        self.physics.refresh_velocities()
         motion = np.zeros(6)
         mujoco.mj_objectVelocity(self.physics.model, self.physics.data, mujoco.mjtObj.mjOBJ_XBODY, self.body, motion, 0)
         return motion[3:], motion[:3]
@@ -148,7 +148,7 @@ class Instance:
         """
         if name not in self.build.bodies:
             raise UnknownNameError("link", name, self.build.bodies)
-        return LinkView(self.physics, self.physics.model.body(self.build.scoped(name)).id)
+        return LinkView(self.physics, self.physics.body(self.build.scoped(name)))
 
     def joint(self, name: str) -> JointView:
         """Return a movable joint by its name in the description.
@@ -175,7 +175,7 @@ class Instance:
         self.physics.refresh_positions()
         if not self.build.roots:
             return self.model.pose
-        return LinkView(self.physics, self.physics.model.body(self.name).id).pose
+        return LinkView(self.physics, self.physics.body(self.name)).pose
 
     @property
     def bounds(self) -> tuple[Array, Array]:

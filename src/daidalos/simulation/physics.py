@@ -67,6 +67,7 @@ class Physics:
         self.forces = forces
         self.can_draw = can_draw
         self._warnings = data.warning.number  # a view
+        self._bodies: dict[str, int] = {}
         self.changed()
 
     def step(self, count: int) -> None:
@@ -96,7 +97,7 @@ class Physics:
 
     def changed(self) -> None:
         """Mark everything derived from the state as out of date."""
-        self._positions_fresh = self._all_fresh = False
+        self._positions_fresh = self._velocities_fresh = self._all_fresh = False
 
     def refresh_positions(self) -> None:
         """Update the poses of bodies and geoms."""
@@ -105,8 +106,22 @@ class Physics:
             mujoco.mj_comPos(self.model, self.data)
             self._positions_fresh = True
 
+    def refresh_velocities(self) -> None:
+        """Update the poses and velocities of bodies."""
+        if not self._velocities_fresh:
+            self.refresh_positions()
+            mujoco.mj_comVel(self.model, self.data)
+            self._velocities_fresh = True
+
     def refresh(self) -> None:
         """Update everything: velocities, accelerations, contacts and their forces."""
         if not self._all_fresh:
             mujoco.mj_forward(self.model, self.data)
-            self._positions_fresh = self._all_fresh = True
+            self._positions_fresh = self._velocities_fresh = self._all_fresh = True
+
+    def body(self, name: str) -> int:
+        """Return the number of a body."""
+        number = self._bodies.get(name)
+        if number is None:
+            number = self._bodies[name] = int(self.model.body(name).id)
+        return number

@@ -104,11 +104,15 @@ class LaunchCommand(Command):
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
         """Launch, or print what would be launched."""
+        options.check(args)
+        if args.lockstep:
+            from daidalos.lockstep.start import replace_process
+
+            return replace_process(["ros2", *options.without_options(args.words)], options.Options.of(args))
         from ros2launch.api import arguments_text, launch_source, parse_launch_arguments
 
         from daidalos.nodes.asset_folders import record_named_files
 
-        options.check(args)
         path, words = _file_and_arguments(args)
         arguments = parse_launch_arguments(words)
         if args.show_all_subprocesses_output:
@@ -123,10 +127,6 @@ class LaunchCommand(Command):
             print(LaunchIntrospector().format_launch_description(description))
             return 0
         _warn_of_misspelt(arguments, description)
-        if args.lockstep:
-            from daidalos.lockstep.start import replace_process
-
-            return replace_process(["ros2", *options.without_options(args.words)], options.Options.of(args))
         record_named_files([args.package_name, *words])
         return launch_source(
             source,

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.link import Rgba
-from daidalos.samples.conversion import nested_message
 from daidalos.samples.fields import time_message
 
 if TYPE_CHECKING:
@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 
 def pose_message(pose: Pose) -> Any:
     """Return a pose as a ``geometry_msgs/msg/Pose``."""
+    from geometry_msgs.msg import Point, Quaternion
     from geometry_msgs.msg import Pose as PoseMessage
 
-    return nested_message(PoseMessage, pose)
+    (x, y, z), (qx, qy, qz, qw) = pose.position, pose.orientation
+    return PoseMessage(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
 
 
 def pose_of(message: Any) -> Pose:
@@ -37,15 +39,15 @@ def pose_of(message: Any) -> Pose:
     return Pose(vector_of(message.position), orientation)
 
 
-def twist_message(linear: Any, angular: Any) -> Any:
+def twist_message(linear: Array, angular: Array) -> Any:
     """Return velocities [m/s, rad/s] as a ``geometry_msgs/msg/Twist``."""
     from geometry_msgs.msg import Twist, Vector3
 
     return Twist(linear=_vector(Vector3, linear), angular=_vector(Vector3, angular))
 
 
-def _vector(kind: Any, values: Any) -> Any:
-    x, y, z = (float(value) for value in values)
+def _vector(kind: Any, values: Array) -> Any:
+    x, y, z = values.tolist()
     return kind(x=x, y=y, z=z)
 
 
