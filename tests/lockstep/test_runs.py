@@ -193,7 +193,37 @@ def test_a_program_that_waits_for_nothing_is_reported(tmp_path: Path) -> None:
     result = run(sys.executable, path, folder=tmp_path)
     assert result.returncode == 1
     assert "nothing is left to happen; every thread waits" in result.stderr
+    assert "program.py (MainThread) waits for a condition or event:" in result.stderr
     assert "threading.Event().wait()" in result.stderr
+
+
+CALLER = """
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from std_srvs.srv import Trigger
+
+rclpy.init()
+nodes = [rclpy.create_node(name) for name in ("left", "right")]
+executor = MultiThreadedExecutor(4)
+for node, other in zip(nodes, ("right", "left")):
+    group = MutuallyExclusiveCallbackGroup()
+    client = node.create_client(Trigger, f"ask_{other}", callback_group=MutuallyExclusiveCallbackGroup())
+    answer = lambda request, response, client=client: client.call(Trigger.Request())
+    node.create_service(Trigger, f"ask_{node.get_name()}", answer, callback_group=group)
+    executor.add_node(node)
+ask = nodes[0].create_client(Trigger, "ask_right")
+ask.wait_for_service()
+ask.call_async(Trigger.Request())
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize("until_s", [None, 15.0])
+def test_nodes_that_wait_for_each_other_are_named(tmp_path: Path, until_s: float | None) -> None:
+    result = run(sys.executable, script(tmp_path, CALLER), folder=tmp_path, options=Options(until_s=until_s))
+    for other in ("left", "right"):
+        assert f"for the answer of /{other} to a call of the service '/ask_{other}'" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -221,3 +251,34 @@ def test_ros2_launch_takes_the_options(tmp_path: Path) -> None:
     assert "[1577836801.000000000] [listener]: I heard: [Hello World: 0]" in result.stdout + result.stderr
     assert "[lockstep] the run ends at 2 s" in result.stderr
     assert "interrupted" not in result.stdout + result.stderr
+
+
+def test_sockets_hand_on_and_what_follows_the_real_time_is_named(tmp_path: Path) -> None:
+    path = script(
+        tmp_path,
+        "import os, select, signal, socket, sys, threading, time, uuid\n"
+        "ours, theirs = socket.socketpair()\n"
+        "begun = time.time()\n"
+        "def peer():\n"
+        "    time.sleep(1.0)\n"
+        "    theirs.sendall(b'hello')\n"
+        "threading.Thread(target=peer).start()\n"
+        "print(ours.recv(100), round(time.time() - begun, 1))\n"
+        "ours.settimeout(0.5)\n"
+        "try:\n"
+        "    ours.recv(1)\n"
+        "except TimeoutError:\n"
+        "    print('nothing', round(time.time() - begun, 1))\n"
+        "print(select.select([ours], [], [], 2.5), round(time.time() - begun, 1))\n"
+        "print(time.clock_gettime(time.CLOCK_REALTIME) - time.time(), uuid.uuid1())\n"
+        "signal.alarm(0)\n",
+    )
+    first, second = (run(sys.executable, path, folder=tmp_path) for _ in range(2))
+    assert first.returncode == 0, first.stderr
+    *lines, identifier = first.stdout.splitlines()
+    assert lines == ["b'hello' 1.0", "nothing 1.5", "([], [], []) 4.0"]
+    assert identifier.startswith("0.0 ")
+    assert first.stdout == second.stdout
+    for line, what in ((8, "socket.recv"), (11, "socket.recv"), (14, "select.select"), (16, "signal.alarm")):
+        expected = f"[lockstep] {path}:{line}: {what} of program.py follows the real time; from here on runs may differ"
+        assert expected in first.stderr.splitlines()

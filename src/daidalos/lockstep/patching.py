@@ -20,9 +20,11 @@ import sys
 import threading
 import time
 import types
+import uuid
 from collections.abc import Callable
 from typing import Any
 
+from daidalos.lockstep.outside import Outside
 from daidalos.lockstep.primitives import Local, Lock, RLock
 from daidalos.lockstep.scheduler import EPOCH_NS, FIRST_IDENT, Owner, Scheduler, Wait
 
@@ -30,6 +32,9 @@ start_real_thread = _thread.start_new_thread
 real_thread_ident = _thread.get_ident
 real_monotonic = time.monotonic
 real_sleep = time.sleep
+
+_MACHINE_ADDRESS = 0x020000000001
+"""What `uuid.getnode` returns on every machine: a locally administered address."""
 
 _OTHER_RECEIVER = 1 << 20
 """File descriptor that stands for a receiver of signals beside the caller."""
@@ -94,6 +99,7 @@ def install(scheduler: Scheduler, hooks: Hooks) -> None:
     _patch_random_numbers(hooks)
     _patch_signals(hooks)
     _patch_event_loops(scheduler)
+    Outside(scheduler).install()
 
 
 def _patch_threads(scheduler: Scheduler, hooks: Hooks) -> None:
@@ -271,6 +277,11 @@ def _patch_random_numbers(hooks: Hooks) -> None:
         return hooks.randomness().system.randbytes(size)
 
     os.urandom = urandom
+    if hasattr(os, "getrandom"):
+        os.getrandom = lambda size, flags=0: urandom(size)
+    identifiers: Any = uuid
+    identifiers._generate_time_safe = identifiers._UuidCreate = None  # the system's: its clock, the machine's address
+    identifiers.getnode = lambda: _MACHINE_ADDRESS
     module: Any = random
     module._urandom = urandom
 

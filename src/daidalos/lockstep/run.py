@@ -14,6 +14,7 @@ from daidalos import lockstep
 from daidalos.lockstep import patching
 from daidalos.lockstep.programs import Program
 from daidalos.lockstep.scheduler import Owner, Scheduler
+from daidalos.lockstep.standstill import describe
 
 _COLLECT_NS = 10_000_000_000
 """Simulated time [ns] between collections of garbage, which must not depend on anything else."""
@@ -137,6 +138,7 @@ class Run:
 def exit_status(run: Run, program: Program) -> int:
     """Return the status that a process should end with after a run whose first program this is."""
     if program.status is None:
-        sys.stderr.write("[lockstep] nothing is left to happen; every thread waits:\n" + run.scheduler.report())
+        waiting = describe(list(run.scheduler.threads.values()))
+        sys.stderr.write(f"[lockstep] nothing is left to happen; every thread waits:\n{waiting}\n")
         return 1
     return program.status if program.status >= 0 else 128 - program.status

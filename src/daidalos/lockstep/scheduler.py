@@ -78,16 +78,19 @@ class Wait:
         What it waits for, for messages.
     lock : object
         The lock that it waits for, None for anything else; its `holder` is the thread that has it.
+    since_ns : int
+        Time [ns] at which it began.
     woken : bool
         Whether it has come.
     """
 
-    __slots__ = ("lock", "thread", "what", "woken")
+    __slots__ = ("lock", "since_ns", "thread", "what", "woken")
 
     def __init__(self, thread: Thread, what: str, lock: Any = None) -> None:
         self.thread = thread
         self.what = what
         self.lock = lock
+        self.since_ns = thread.scheduler.now_ns
         self.woken = False
 
 
@@ -266,6 +269,11 @@ class Scheduler:
         return self.now_ns
 
     @property
+    def is_anyone_ready(self) -> bool:
+        """Whether another thread can run at this instant."""
+        return bool(self._ready)
+
+    @property
     def is_foreign(self) -> bool:
         """Whether a real thread beside the run asks; the clean-up of objects may run in one."""
         return _real_ident() != self._ident
@@ -409,12 +417,3 @@ class Scheduler:
 
     def _at(self) -> str:
         return f"the run cannot go on at {1e-9 * self.now_ns:g} s"
-
-    def report(self) -> str:
-        """Return where every thread stands and what it waits for."""
-        lines = []
-        for thread in self.threads.values():
-            if thread is not self.current:
-                what = thread.waiting.what if thread.waiting is not None else "its turn"
-                lines += [f"{thread.owner.name} ({thread.name}) waits for {what}:", thread.stack()]
-        return "\n".join(lines)

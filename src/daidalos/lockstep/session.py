@@ -17,6 +17,7 @@ from daidalos.lockstep.launched import ProgramStarter
 from daidalos.lockstep.programs import Program, change_folder
 from daidalos.lockstep.run import Run
 from daidalos.lockstep.scheduler import LockstepError
+from daidalos.lockstep.standstill import long_waits
 
 
 def start(run: Run, command: list[str], until_s: float | None, bag: str | None) -> Program:
@@ -119,7 +120,9 @@ def _end_at(run: Run, program: Program, until_s: float) -> None:
     run.scheduler.sleep_until(round(1e9 * until_s))
     if program.status is not None:
         return
-    sys.stderr.write(f"[lockstep] the run ends at {until_s:g} s\n")
+    late = long_waits(run.scheduler.threads.values(), run.scheduler.now_ns)
+    for line in (f"the run ends at {until_s:g} s", *late):
+        sys.stderr.write(f"[lockstep] {line}\n")
     launches = launch_service.running_services()
     if launches:
         launches[0].shutdown()

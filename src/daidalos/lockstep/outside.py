@@ -1,0 +1,130 @@
+"""What follows the real time in a lock-step run: sockets, ``select``, timers of the system; each use is named once.
+
+A thread that waits for a socket or a file hands on like any other. Where nobody else can run at that instant, the
+system is asked for a moment of real time, since the peer may be another process; then the stepped time goes on.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import socket
+import sys
+import time
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
+from daidalos.lockstep.scheduler import Scheduler
+
+_REAL_WAIT_S = 0.05
+"""Real time [s] that a peer in another process gets before the stepped time goes on."""
+
+_PATIENCE_S = 1.0
+"""Real time [s] for which a run waits for other processes altogether, counted from when one last answered."""
+
+_POLL_NS = 10_000_000
+"""Stepped time [ns] after which a thread looks at its socket again."""
+
+_LIBRARY = os.path.dirname(os.__file__)
+
+
+class Outside:
+    """Waits of a run for what is outside of it.
+
+    Parameters
+    ----------
+    scheduler : Scheduler
+    """
+
+    def __init__(self, scheduler: Scheduler) -> None:
+        self._scheduler = scheduler
+        self._named: set[tuple[str, int]] = set()
+        self._select = select.select
+        self._patience_s = _PATIENCE_S
+
+    def install(self) -> None:
+        """Replace what waits for sockets and files, and name what only the system's time drives."""
+        module: Any = socket.socket
+        for name in ("recv", "recv_into", "recvfrom", "recvfrom_into", "recvmsg", "accept"):
+            if hasattr(module, name):
+                setattr(module, name, self._receiver(getattr(module, name), name))
+        selects: Any = select
+        selects.select = self._select_in_steps
+        for name in ("setitimer", "alarm"):
+            if hasattr(signal, name):
+                setattr(signal, name, self._named_only(getattr(signal, name), f"signal.{name}"))
+        clocks: Any = time
+        if hasattr(time, "clock_gettime"):
+            clocks.clock_gettime = lambda clock: time.time() if clock == time.CLOCK_REALTIME else time.monotonic()
+            clocks.clock_gettime_ns = lambda clock: (
+                time.time_ns() if clock == time.CLOCK_REALTIME else time.monotonic_ns()
+            )
+
+    def _receiver(self, receive: Callable[..., Any], name: str) -> Callable[..., Any]:
+        def wait_and_receive(self_: Any, *args: Any, **kwargs: Any) -> Any:
+            limit = self_.gettimeout()
+            if limit != 0.0 and not self._wait([self_], [], [], limit, f"socket.{name}")[0]:
+                raise TimeoutError("timed out")
+            return receive(self_, *args, **kwargs)
+
+        wait_and_receive.__name__ = name
+        return wait_and_receive
+
+    def _select_in_steps(self, read: Any, write: Any, failed: Any, timeout: float | None = None) -> Any:
+        return self._wait(read, write, failed, timeout, "select.select")
+
+    def _wait(self, read: Any, write: Any, failed: Any, limit_s: float | None, what: str) -> Any:
+        """Wait as `select.select` does, for at most so much stepped time."""
+        scheduler = self._scheduler
+        found = self._select(read, write, failed, 0)
+        if any(found) or scheduler.current is None or scheduler.is_foreign or limit_s == 0:
+            return found
+        self._name(what)
+        deadline = None if limit_s is None else scheduler.now_ns + max(round(1e9 * limit_s), 1)
+        while deadline is None or scheduler.now_ns < deadline:
+            scheduler.sleep_until(scheduler.now_ns)  # whoever can run at this instant may be the peer
+            found = self._select(read, write, failed, 0)
+            if not any(found) and not scheduler.is_anyone_ready:
+                found = self._wait_really(read, write, failed)
+            if any(found):
+                return found
+            following = scheduler.now_ns + _POLL_NS
+            scheduler.sleep_until(following if deadline is None else min(following, deadline))
+        return self._select(read, write, failed, 0)
+
+    def _wait_really(self, read: Any, write: Any, failed: Any) -> Any:
+        """Give other processes a moment."""
+        moment = min(_REAL_WAIT_S, max(self._patience_s, 0.0))
+        found = self._select(read, write, failed, moment)
+        self._patience_s = _PATIENCE_S if any(found) else self._patience_s - moment
+        return found
+
+    def _named_only(self, function: Callable[..., Any], what: str) -> Callable[..., Any]:
+        def call(*args: Any, **kwargs: Any) -> Any:
+            self._name(what)
+            return function(*args, **kwargs)
+
+        return call
+
+    def _name(self, what: str) -> None:
+        """Name the line of a program that uses something outside of the run, once."""
+        frame = _first_own_frame(sys._getframe(1))
+        if frame is None or (where := (frame.f_code.co_filename, frame.f_lineno)) in self._named:
+            return
+        self._named.add(where)
+        thread = self._scheduler.current
+        program = "" if thread is None else f" of {thread.owner.name}"
+        line = f"{where[0]}:{where[1]}: {what}{program} follows the real time; from here on runs may differ"
+        os.write(2, f"[lockstep] {line}\n".encode())
+
+
+def _first_own_frame(frame: FrameType | None) -> FrameType | None:
+    """Return the first frame outside of this module and of Python's own library; None where there is none."""
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if file != __file__ and (not file.startswith(_LIBRARY) or "site-packages" in file):
+            return frame
+        frame = frame.f_back
+    return None
