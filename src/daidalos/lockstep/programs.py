@@ -135,7 +135,7 @@ class Program(Owner):
         *,
         environ: Mapping[str, str] | None = None,
         folder: str | None = None,
-        on_output: Callable[[int, bytes], None] | None = None,
+        on_output: Callable[[int, bytes], object] | None = None,
     ) -> None:
         self.name = os.path.basename(argv[0]) if argv else "program"
         self.scheduler = scheduler
@@ -298,7 +298,7 @@ def _environment(variables: Mapping[str, str]) -> dict[Any, Any]:
     return {encode(name): value(text) for name, text in variables.items()}
 
 
-def _stream(on_output: Callable[[int, bytes], None], fd: int) -> io.TextIOWrapper:
+def _stream(on_output: Callable[[int, bytes], object], fd: int) -> io.TextIOWrapper:
     raw = _Output(lambda data: on_output(fd, data))
     buffered = io.BufferedWriter(raw)
     return io.TextIOWrapper(buffered, encoding="utf-8", errors="backslashreplace", line_buffering=True)

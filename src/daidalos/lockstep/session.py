@@ -69,7 +69,7 @@ class Child:
         When the command is not a program of this Python.
     """
 
-    def __init__(self, run: Run, command: list[str], on_output: Callable[[int, bytes], None]) -> None:
+    def __init__(self, run: Run, command: list[str], on_output: Callable[[int, bytes], object]) -> None:
         self._program = _program(run, command, on_output)
         self._ended = threading.Event()
         self._program.on_exit.append(lambda status: self._ended.set())
@@ -88,7 +88,7 @@ class Child:
         self._ended.wait()
 
 
-def _program(run: Run, command: list[str], on_output: Callable[[int, bytes], None] | None = None) -> Program:
+def _program(run: Run, command: list[str], on_output: Callable[[int, bytes], object] | None = None) -> Program:
     found = body_of(command, os.environ)
     if found is None:
         raise LockstepError(f"'{command[0]}' is not a program of this Python")

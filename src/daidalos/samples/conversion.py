@@ -128,7 +128,8 @@ def nested_message(message: Any, value: Any) -> Any:
     value : object
         A message of the class, a dataclass with fields of equal names, or numbers in the order of the fields.
     """
-    return _nested(message, type(value))(value)
+    kind: Any = type(value)
+    return _nested(message, kind)(value)
 
 
 @cache
