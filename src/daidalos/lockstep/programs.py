@@ -80,7 +80,7 @@ class Terminated(BaseException):
 class _Output(io.RawIOBase):
     """Raw stream that passes bytes on."""
 
-    def __init__(self, write: Callable[[bytes], None]) -> None:
+    def __init__(self, write: Callable[[bytes], object]) -> None:
         super().__init__()
         self._write = write
 
