@@ -30,3 +30,9 @@ def test_errors_of_the_layers_are_user_errors_with_a_location():
     assert str(error) == "a.urdf:2: <link>: it is wrong"
     assert error.location == Location("a.urdf", 2)
     assert isinstance(WorkspaceError("it is wrong"), UserError)
+
+
+def test_a_message_is_shown_as_it_is_written_whatever_a_file_holds():
+    assert str(UserError("'a\x85b\u2028c\x1b[2Jd\re': unknown\n\tsee ü")) == (
+        "'a\\x85b\\u2028c\\x1b[2Jd\\re': unknown\n\tsee ü"
+    )

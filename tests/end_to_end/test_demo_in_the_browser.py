@@ -23,7 +23,7 @@ def page(domain: int) -> Iterator[Chromium]:
             chromium.open(address)
             yield chromium
             assert chromium.errors == []
-        assert demo.interrupt() == 0
+        assert demo.interrupt() == 130
         demo.assert_no_traceback()
 
 

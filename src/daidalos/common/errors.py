@@ -43,5 +43,12 @@ class UserError(Exception):
     """
 
     def __init__(self, problem: str, location: Location | None = None) -> None:
-        super().__init__(f"{location.prefix() if location else ''}{problem}")
+        super().__init__(f"{_visible(location.prefix()) if location else ''}{_visible(problem)}")
         self.location = location
+
+
+def _visible(text: str) -> str:
+    """Return a text without what a terminal would obey or show as a line break: a message repeats what a file holds."""
+    if text.isprintable():
+        return text
+    return "".join(one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in text)

@@ -141,6 +141,12 @@ class ManagedNode(LifecycleNode):
         self.on_cleanup(state)
         return super().on_error(state)
 
+    def destroy_node(self) -> None:
+        """Deactivate the node if it is active, as Nav2's nodes do before they end, and destroy it."""
+        if self.current_state.label == "active":
+            self.trigger_deactivate()
+        super().destroy_node()
+
     def _members(self) -> list[Any]:
         return [*self.waitables, *(member for kind in _MEMBERS for member in getattr(self, f"{kind}s"))]
 

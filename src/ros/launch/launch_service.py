@@ -64,6 +64,7 @@ class LaunchService:
         self.__shutting_down = False
         self.__return_code = 0
         self.__interrupts = 0
+        self.__interrupted = False
         self.__error: LaunchFileError | None = None
 
     @property
@@ -85,6 +86,11 @@ class LaunchService:
     def error(self) -> LaunchFileError | None:
         """The first mistake that ended the launch, with its file and line; None if there was none."""
         return self.__error
+
+    @property
+    def was_interrupted(self) -> bool:
+        """Whether SIGINT (Ctrl-C) came during the last `run`, whatever ended it."""
+        return self.__interrupted
 
     def emit_event(self, event: Event) -> None:
         """Queue an event; may be called from any thread."""
@@ -111,6 +117,7 @@ class LaunchService:
         -------
             0, or 1 after an error.
         """
+        self.__interrupted = False
         with _event_loop() as loop:
             return self.__run_in(loop, shutdown_when_idle)
 
@@ -121,6 +128,7 @@ class LaunchService:
                 return loop.run_until_complete(task)
             except KeyboardInterrupt:
                 # It came in the moment before the signal handlers were in place, or after they were removed.
+                self.__interrupted = True
                 if not task.done():
                     self.__interrupt("ctrl-c (SIGINT)")
 
@@ -187,7 +195,7 @@ class LaunchService:
             yield
             return
         with AsyncSafeSignalManager(loop) as manager:
-            manager.handle(signal.SIGINT, lambda signum: self.__interrupt("ctrl-c (SIGINT)"))
+            manager.handle(signal.SIGINT, self.__on_sigint)
             manager.handle(signal.SIGTERM, lambda signum: self.__interrupt("SIGTERM"))
             if hasattr(signal, "SIGHUP"):
                 manager.handle(signal.SIGHUP, lambda signum: self.__interrupt("SIGHUP"))
@@ -287,6 +295,10 @@ class LaunchService:
 
     def __on_shutdown(self, event: Event, context: LaunchContext) -> None:
         context._set_is_shutdown(True)
+
+    def __on_sigint(self, number: int) -> None:
+        self.__interrupted = True
+        self.__interrupt("ctrl-c (SIGINT)")
 
     def __interrupt(self, what: str, *, at_once: bool = False) -> None:
         """React to a signal: stop in order, then harder each time."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import threading
 from collections.abc import Iterator
 
 import numpy as np
@@ -9,7 +11,7 @@ import pytest
 import rclpy
 from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import Point32, Polygon, PolygonStamped, TransformStamped
+from geometry_msgs.msg import Point, Point32, Polygon, PolygonStamped, TransformStamped, Twist
 from nav2_msgs.action import DriveOnHeading, Wait
 from nav2_msgs.msg import Costmap
 from rclpy.action import ActionClient
@@ -101,6 +103,46 @@ def test_deactivating_aborts_a_goal(executor: SingleThreadedExecutor) -> None:
     refused = client.send_goal_async(DriveOnHeading.Goal())
     executor.spin_until_future_complete(refused, TIMEOUT_S)
     assert not refused.result().accepted
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_ctrl_c_during_a_behaviour_stops_the_robot_and_prints_nothing(
+    executor: SingleThreadedExecutor, capfd: pytest.CaptureFixture[str]
+) -> None:
+    server, robot = executor.get_nodes()
+    be_somewhere(robot)
+    speeds: list[float] = []
+    moving, stopped = Future(), threading.Event()
+
+    def receive(message: Twist) -> None:
+        speeds.append(message.linear.x)
+        if message.linear.x and not moving.done():
+            moving.set_result(None)
+        elif moving.done() and not message.linear.x:
+            stopped.set()
+
+    robot.create_subscription(Twist, "cmd_vel", receive, 10)
+    client = ActionClient(robot, DriveOnHeading, "drive_on_heading")
+    assert client.wait_for_server(TIMEOUT_S)
+    client.send_goal_async(DriveOnHeading.Goal(target=Point(x=1.0), speed=0.1, time_allowance=Duration(sec=60)))
+    executor.spin_until_future_complete(moving, TIMEOUT_S)
+    assert moving.done()
+    server.context.shutdown_by_signal()
+    executor.remove_node(robot)
+    server.destroy_node()
+    gc.collect()
+    assert "Traceback" not in capfd.readouterr().err
+    while (taken := taken_by(robot)) is not None:
+        receive(taken)
+    assert stopped.is_set()
+    assert speeds[-1] == 0.0
+
+
+def taken_by(robot: Node) -> Twist | None:
+    """Return the next velocity that waits for the robot; its executor has ended with the context."""
+    (subscription,) = [one for one in robot.subscriptions if one.topic_name == "/cmd_vel"]
+    taken = subscription.handle.take_message(Twist, False)
+    return taken and taken[0]
 
 
 def test_it_can_be_configured_again(executor: SingleThreadedExecutor) -> None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from launch import LaunchContext, LaunchDescriptionEntity
-    from launch.event import Event
+    from launch import LaunchDescriptionEntity
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as a shell has it of a program that the signal ended."""
@@ -15,21 +14,13 @@ INTERRUPTED = 130
 def run_launch(*entities: LaunchDescriptionEntity) -> int:
     """Run a launch to its end; return its exit status, or `INTERRUPTED` where Ctrl-C ended it."""
     from launch import LaunchDescription, LaunchService
-    from launch.actions import RegisterEventHandler
-    from launch.event_handlers import OnShutdown
-    from launch.events import Shutdown
 
     from daidalos.distribution import complete_environment
 
     complete_environment()
-    interrupted = False
-
-    def note(event: Event, context: LaunchContext) -> None:
-        nonlocal interrupted
-        interrupted = interrupted or (isinstance(event, Shutdown) and event.due_to_sigint)
-
     service = LaunchService()
-    watch = RegisterEventHandler(OnShutdown(on_shutdown=note))
-    service.include_launch_description(LaunchDescription([watch, *entities]))
+    service.include_launch_description(LaunchDescription(entities))
     status = service.run()
-    return INTERRUPTED if interrupted else status
+    # Ctrl-C of a terminal reaches the processes as well. Where the first of them to end ends the launch before the
+    # launch's own turn comes, that was Ctrl-C all the same.
+    return INTERRUPTED if service.was_interrupted else status
