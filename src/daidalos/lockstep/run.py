@@ -58,7 +58,12 @@ class Run:
                 send_signal=self._send_signal,
             ),
         )
-        patching.start_real_thread(self._watch, ())
+        self._is_watched = False
+
+    def reseed(self, seed: int) -> None:
+        """Set another seed; to be called before the first program is created."""
+        self.seed = seed
+        self._randomness = patching.Randomness(seed)
 
     def create(self, body: Callable[[], Any], argv: Sequence[str], **options: Any) -> Program:
         """Return a new program; see `Program`."""
@@ -80,6 +85,9 @@ class Run:
         LockstepError
             When the run cannot go on.
         """
+        if not self._is_watched:
+            self._is_watched = True
+            patching.start_real_thread(self._watch, ())
         streams = sys.stdout, sys.stderr
         try:
             self.scheduler.run()

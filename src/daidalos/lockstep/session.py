@@ -38,11 +38,7 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     LockstepError
         When the command is not a program of this Python.
     """
-    start_processes_by(ProgramStarter(run.create))
-    system: Any = os
-    system.chdir = change_folder
-    system.execve = system.execvpe = _replace_program
-    system.execv = system.execvp = lambda path, argv: _replace_program(path, argv, os.environ)
+    install(run)
     program = _program(run, command)
     if bag is not None:
         _start_recorder(run, program, bag)
@@ -50,6 +46,15 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     if until_s is not None:
         run.scheduler.spawn(lambda: _end_at(run, program, until_s), run.programs[0], "--until")
     return program
+
+
+def install(run: Run) -> None:
+    """Make what would start processes start programs of a run, and the working folder one of each program."""
+    start_processes_by(ProgramStarter(run.create))
+    system: Any = os
+    system.chdir = change_folder
+    system.execve = system.execvpe = _replace_program
+    system.execv = system.execvp = lambda path, argv: _replace_program(path, argv, os.environ)
 
 
 class Child:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from daidalos.lockstep.options import Options, add_options
 
-_ENVIRONMENT = {
+ENVIRONMENT = {
     "RMW_IMPLEMENTATION": "rmw_daidalos_inprocess",
     # What makes Python, numpy and linear algebra compute alike on machines of one architecture.
     "PYTHONHASHSEED": "0",
@@ -35,7 +35,7 @@ def replace_process(command: Sequence[str], options: Options) -> int:
     options : Options
     """
     words = [sys.executable, "-P", "-m", "daidalos.lockstep.start", *options.words(), "--", *command]
-    environment = os.environ | _ENVIRONMENT
+    environment = os.environ | ENVIRONMENT
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     if os.name != "nt":  # where a replaced process ends at once for who started it

@@ -10,17 +10,18 @@ import numpy as np
 
 from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, Vector
+from daidalos.description.actors import actor_pose
 from daidalos.description.gazebo import model_from_robot
 from daidalos.description.link import Inertial
 from daidalos.description.robot import Robot
 from daidalos.description.scaling import scaled
-from daidalos.description.world import Model
+from daidalos.description.world import Actor, Model
 from daidalos.samples.commands import PositionTrajectoryCommand
 from daidalos.simulation.conversion.preparation import PreparedMeshes
 from daidalos.simulation.engine import Engine
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import JointPush, Push
-from daidalos.simulation.instance import JointView
+from daidalos.simulation.instance import Instance, JointView
 from daidalos.simulation.trajectory_follower import ActiveTrajectory, TrajectoryFollower
 
 
@@ -96,14 +97,29 @@ class Simulation(Engine):
             self._compilation.prepare((model,), self._progress)
         else:
             self._compilation.take_prepared(meshes)
-        instance = self._add(replace(model, name=name), pose or model.pose, namespace)
+        self._insert_or_drop(self._add(replace(model, name=name), pose or model.pose, namespace))
+        return name
+
+    def add_actor(self, actor: Actor) -> None:
+        """Add a figure that follows a script, whose times count from the simulation's beginning.
+
+        Raises
+        ------
+        NameTakenError
+            When a model of this name is there already.
+        SimulationError
+            When it cannot be simulated; the world is then as it was before.
+        """
+        self._compilation.prepare((actor.model,), self._progress)
+        self._insert_or_drop(self._add(actor.model, actor_pose(actor, 1e-9 * self.time_ns), "", actor))
+
+    def _insert_or_drop(self, instance: Instance) -> None:
         try:
             self._insert(instance)
         except (ValueError, SimulationError) as problem:
             self._drop(instance)
             self._recompile()
-            raise SimulationError(f"model {name!r} cannot be simulated: {problem}") from None
-        return name
+            raise SimulationError(f"model {instance.name!r} cannot be simulated: {problem}") from None
 
     def delete(self, name: str) -> None:
         """Remove a model from the world.

@@ -15,7 +15,7 @@ from daidalos.transport.memory import keep_memory
 from daidalos.transport.publisher import Publisher
 from daidalos.transport.qos import Qos, incompatibilities
 from daidalos.transport.service import Service
-from daidalos.transport.subscription import Subscription
+from daidalos.transport.subscription import Impairment, Subscription
 
 Watcher = Callable[[bool, EndpointInfo], None]
 
@@ -48,6 +48,7 @@ class Session:
         self._services: dict[str, dict[Service, None]] = {}
         self._clients: dict[str, dict[Client, None]] = {}
         self._watchers: dict[tuple[str, EndpointKind], dict[Watcher, None]] = {}
+        self._impairments: dict[str, Impairment] = {}
         self._own: set[bytes] = set()
         self._closed = False
         self._abandoned = AbandonedObjects()
@@ -111,6 +112,7 @@ class Session:
         key, endpoint = self._endpoint(EndpointKind.SUBSCRIPTION, node, topic, message_type, qos)
         subscription = Subscription(endpoint, codec_of(message_type, self.backend.wide), on_ready)
         with self._lock:
+            subscription.impairment = self._impairments.get(topic)
             self._subscriptions.setdefault(topic, {})[subscription] = None
             for other in self.graph.endpoints(EndpointKind.PUBLISHER, name=topic):
                 _refuse_if_incompatible(subscription, other)
@@ -123,6 +125,16 @@ class Session:
         subscription.attach(remote, lambda: self._remove(key, self._subscriptions, subscription))
         self.graph.add_endpoint(key, endpoint)
         return subscription
+
+    def impair(self, topic: str, impairment: Impairment | None) -> None:
+        """Set the impairment of all connections of this process on a topic, present and future ones."""
+        with self._lock:
+            if impairment is None:
+                self._impairments.pop(topic, None)
+            else:
+                self._impairments[topic] = impairment
+            for subscription in self._subscriptions.get(topic, ()):
+                subscription.impairment = impairment
 
     def create_service(
         self, node: NodeInfo, name: str, service_type: Any, qos: Qos, on_ready: Callable[[], None] = _nothing

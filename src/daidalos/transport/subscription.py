@@ -20,6 +20,9 @@ _SHORT_FOR_NS = 2_000_000_000
 _FAST_NS = 1_000_000
 _SLOW_NS = 10 * _FAST_NS
 
+Impairment = Callable[["Subscription", tuple[Any, ...]], None]
+"""Imperfect connection: a function of a subscription and a queue entry."""
+
 
 class Subscription:
     """Subscription of a node, created by `Session.create_subscription`.
@@ -35,6 +38,9 @@ class Subscription:
         Called after a sample was queued, on the thread that queued it.
     queue
         The samples that wait to be taken, the oldest first.
+    impairment
+        Takes the samples of this process in place of the queue, to pass them on to `enqueue` late or not at all;
+        None where the connection is perfect.
     """
 
     _gave_up_at = -_SHORT_FOR_NS
@@ -54,6 +60,7 @@ class Subscription:
         self._take_interval = 0
         self._left_some = False
         self._space = threading.Event()
+        self.impairment: Impairment | None = None
 
     def __len__(self) -> int:
         return len(self.queue)
@@ -102,6 +109,14 @@ class Subscription:
         if self._observers:
             _, stamp, sequence, gid = item
             self._notify(SampleInfo(stamp, stamp, sequence, gid))
+        if self.impairment is not None:
+            self.impairment(self, item)
+            return
+        self.queue.append(item)
+        self.on_ready()
+
+    def enqueue(self, item: tuple[Any, ...]) -> None:
+        """Queue a sample that an impairment has taken."""
         self.queue.append(item)
         self.on_ready()
 

@@ -19,6 +19,7 @@ _DESCRIPTIONS = {
     "diff": "Compare two bags, message by message",
     "extensions": "List what can be extended, and the extensions that are there",
     "map": "Build a map from the log of a robot",
+    "scenario": "Run scenarios in lock-step, and look at those that failed",
     "sim": "Simulate a world",
     "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",
 }

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.logging import LoggingSeverity, set_logger_level
@@ -27,10 +28,14 @@ from daidalos.samples.fields import time_message
 
 if TYPE_CHECKING:
     from daidalos.description.world import World
+    from daidalos.nodes.gazebo_ros._host import Host
     from daidalos.samples.sensors import Sample
     from daidalos.simulation import Simulation
 
 _CLOCK_RATE = 100.0
+
+RUNNING: WeakSet[GzServer] = WeakSet()
+"""Servers of this process, for those who share it with them in lock-step."""
 
 
 @dataclass(frozen=True)
@@ -146,8 +151,14 @@ class GzServer(Node):
         self._create_services()
         self._performance = self.create_timer(1.0, self._publish_performance, clock=_steady_clock())
         self._paced.start(paused=start.paused)
+        RUNNING.add(self)
         name = start.world.name if start.world else "an empty world"
         self.get_logger().info(f"simulating {name}, {len(simulation.models)} models")
+
+    @property
+    def host(self) -> Host:
+        """The simulation as the services see it."""
+        return self._host
 
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text)
