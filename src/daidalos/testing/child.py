@@ -67,8 +67,10 @@ class _Reporter:
 
             draw_failure(self._scenario, self._scenario.folder / PICTURE, item.name)
         if call.when == "call":
-            report.user_properties.append(("simulated_s", round(self._scenario.now, 6)))
-            report.user_properties.extend(sorted(self._scenario.metrics.items()))
+            # JUnit's writer takes those of the last report, pytest's own hooks those of this one.
+            properties = [("simulated_s", round(self._scenario.now, 6)), *sorted(self._scenario.metrics.items())]
+            report.user_properties.extend(properties)
+            item.user_properties.extend(properties)
         return report
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
