@@ -139,14 +139,14 @@ class Chromium:
         return answer["result"].get("value")
 
     def wait_for(self, condition: str, timeout: float = 60) -> Any:
-        """Wait in the page until an expression is true, and return its value."""
+        """Wait in the page until an expression, or what it promises, is true, and return its value."""
         limit = int(1000 * timeout)
         value = self._evaluate_across_pages(
             f"""new Promise((resolve) => {{
                 const until = performance.now() + {limit};
-                const look = () => {{
+                const look = async () => {{
                     let value;
-                    try {{ value = ({condition}); }} catch {{ value = undefined; }}
+                    try {{ value = await ({condition}); }} catch {{ value = undefined; }}
                     if (value || performance.now() > until) resolve(value ?? null);
                     else setTimeout(look, 30);
                 }};
@@ -184,14 +184,21 @@ class Chromium:
         self.drag([(x, y)], count=count)
 
     def click_on(self, selector: str, count: int = 1) -> None:
-        """Click the middle of an element."""
-        box = self.wait_for(
-            f"(() => {{ const e = document.querySelector({selector!r});"
-            " e?.scrollIntoView({ block: 'nearest' });"
-            " const b = e?.getBoundingClientRect();"
-            " return b && b.width && { x: b.x + b.width / 2, y: b.y + b.height / 2 }; })()"
+        """Click the middle of an element, once it stands still and nothing lies over it."""
+        place = self.wait_for(
+            f"""(async () => {{
+                const element = document.querySelector({selector!r});
+                element.scrollIntoView({{ block: "nearest" }});
+                const before = element.getBoundingClientRect();
+                for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
+                const box = element.getBoundingClientRect();
+                const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+                const stands = box.width && box.x === before.x && box.y === before.y;
+                const hit = document.elementFromPoint(x, y);
+                return stands && hit && (element.contains(hit) || hit.contains(element)) && {{ x, y }};
+            }})()"""
         )
-        self.click(box["x"], box["y"], count)
+        self.click(place["x"], place["y"], count)
 
     def double_click_on(self, selector: str) -> None:
         """Click the middle of an element twice."""

@@ -121,7 +121,7 @@ def _first_hint_while_waiting(line, env):
     [
         ("{linear: [}", "The passed value is not valid YAML: line 1, column 11: "),
         ("{lnear: {x: 1}}", "Did you mean 'linear'?"),
-        ("{linear: {speed: 1}}", "Its fields are: x, y, z"),
+        ("{linear: {speed: 1}}", "'Vector3' object has no attribute 'speed'"),
         ("{linear: {x:1.5}}", "Did you mean 'x: 1.5'? YAML wants a space after the colon"),
         ("{linear: {x: fast}}", "field 'x' of geometry_msgs/msg/Vector3: could not convert string to float: 'fast'"),
         ("3", "needs to be a dictionary in YAML format"),
