@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 LENGTH = struct.Struct("!q")
 
+_real_select = select.select
+
 PRELOADED = (
     "numpy.random",
     "rclpy.executors",
@@ -140,7 +142,7 @@ def _fork(run: Any, data: bytes) -> int:
         os.dup2(nothing, 0)
         os._exit(_carry_out(run, data) & 0xFF)
     os.close(ending)
-    readable, _, _ = select.select([0, ended], [], [])
+    readable, _, _ = _real_select([0, ended], [], [])
     if ended not in readable:
         with contextlib.suppress(ProcessLookupError):
             os.kill(child, 9)
