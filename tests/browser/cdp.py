@@ -119,6 +119,11 @@ class Chromium:
         """Go to an address and wait until the page is loaded."""
         self._run(self._load("Page.navigate", url=url))
 
+    def forget(self, url: str) -> None:
+        """Remove what pages of an address's origin have stored."""
+        origin = "/".join(url.split("/")[:3])
+        self._run(self._command("Storage.clearDataForOrigin", origin=origin, storageTypes="all"))
+
     def reload(self) -> None:
         """Load the page again, as the user's key does."""
         self._run(self._load("Page.reload"))

@@ -72,9 +72,8 @@ def page(browser: Chromium, source: MemorySource, robot: DemoRobot) -> Iterator[
 
 def show(browser: Chromium, url: str) -> None:
     """Open the page as someone who was never there."""
-    browser.open(url)
-    browser.evaluate("localStorage.clear()")
     browser.open("about:blank")
+    browser.forget(url)
     browser.errors.clear()
     browser.open(url)
     browser.wait_for(READY, 60)

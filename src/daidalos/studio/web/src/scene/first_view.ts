@@ -15,6 +15,8 @@ const QUIET_S = 2;
 const LONGEST_S = 12;
 /** Of the content's size: less is not worth another view. */
 const MIN_CHANGE = 0.08;
+/** By how many times the robot's box grows, as parts appear, before it is framed again; turning alone changes it less. */
+const MIN_GROWTH = 1.5;
 
 export class FirstView {
   private shown: Content = { all: new Box3(), robot: new Box3() };
@@ -57,15 +59,25 @@ export class FirstView {
   }
 
   private differs({ all, robot }: Content): boolean {
-    return moved(this.shown.all, all) || moved(this.shown.robot, robot);
+    return moved(this.shown.all, all) || grown(this.shown.robot, robot);
   }
+}
+
+/** Whether a box that may travel has appeared, gone or become larger. */
+function grown(before: Box3, now: Box3): boolean {
+  if (before.isEmpty() || now.isEmpty()) {
+    return before.isEmpty() !== now.isEmpty();
+  }
+  return length(now) > MIN_GROWTH * length(before);
+}
+
+function length(box: Box3): number {
+  return box.getSize(new Vector3()).length();
 }
 
 function moved(before: Box3, now: Box3): boolean {
   if (before.isEmpty() || now.isEmpty()) {
     return before.isEmpty() !== now.isEmpty();
   }
-  const size = now.getSize(new Vector3()).length();
-  const corner = (a: Vector3, b: Vector3) => a.distanceTo(b);
-  return Math.max(corner(before.min, now.min), corner(before.max, now.max)) > MIN_CHANGE * size;
+  return Math.max(before.min.distanceTo(now.min), before.max.distanceTo(now.max)) > MIN_CHANGE * length(now);
 }
