@@ -6,7 +6,7 @@ import pytest
 
 from daidalos.common import pose2
 from daidalos.mapping.evaluation import compare_with_truth
-from daidalos.mapping.grid import ScanGrid
+from daidalos.mapping.grid import OccupancyGrid, ScanGrid
 from daidalos.mapping.scan import LaserScanData
 from daidalos.mapping.slam import ScanResult, Slam, SlamConfig
 
@@ -14,6 +14,18 @@ from .worlds import Lidar, arena, box, cast, corridors, drive, raster, room_scan
 
 RATE = 15.0
 TOUR = np.array([[-3.0, -2.3], [3.0, -2.3], [3.2, 2.2], [-3.0, 2.3], [-3.0, -0.5], [0.0, 0.0], [3.0, 0.5]])
+
+
+def common(first: OccupancyGrid, second: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells of two grids where both have some."""
+    shift = np.round((np.array(second.origin) - first.origin)[:2] / first.resolution).astype(int)
+    begin = np.maximum(0, shift)
+    end = np.minimum(first.data.shape[::-1], shift + second.data.shape[::-1])
+    cells = [
+        grid.data[low[1] : high[1], low[0] : high[0]]
+        for grid, low, high in ((first, begin, end), (second, begin - shift, end - shift))
+    ]
+    return cells[0], cells[1]
 
 
 @cache
@@ -104,8 +116,9 @@ def test_a_loop_is_closed_and_the_map_follows_in_pieces() -> None:
     whole = ScanGrid(0.05)
     for cloud, pose in zip(slam.key_clouds, slam.key_poses, strict=True):
         whole.add(cloud, pose)
-    assert pieces.origin == whole.classify().origin
-    assert np.mean(pieces.data != whole.classify().data) < 0.005
+    one, other = common(pieces, whole.classify())
+    assert one.size > 0.98 * pieces.data.size
+    assert np.mean(one != other) < 0.005
     assert compare_with_truth(pieces, raster(corridors(), 0.05)).walls_true > 0.9
     assert drawn > 0
 

@@ -1,5 +1,6 @@
 """Occupancy grids of beams counted per cell, from which single scans can be removed again."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -137,6 +138,14 @@ class ScanGrid:
             grown.append(new)
         self._hits, self._misses = grown
         self._corner = corner
+
+
+def draw_scans(clouds: Sequence[Cloud], poses: Array, resolution: float) -> OccupancyGrid:
+    """Draw scans at poses (n, 3) as one map with cells of a resolution [m]."""
+    grid = ScanGrid(resolution)
+    for cloud, pose in zip(clouds, poses, strict=True):
+        grid.add(cloud, pose)
+    return grid.classify()
 
 
 def _copy_known(old: Counts, new: Counts, row: int, column: int) -> None:

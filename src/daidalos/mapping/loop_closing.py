@@ -12,6 +12,7 @@ from daidalos.mapping.pose_graph import Edge
 from daidalos.mapping.scan import Cloud
 from daidalos.mapping.scan_matching.matcher import PointMap, Window, merge
 from daidalos.mapping.scan_matching.point_to_line import match_information
+from daidalos.mapping.tracking import view_centres
 
 DRIFT_PER_METRE = 0.03
 DRIFT_PER_RADIAN = 0.03
@@ -76,8 +77,9 @@ class LoopCloser:
         """
         config = self.config
         newest = poses.shape[0] - 1
+        centres = view_centres(clouds, poses, barycenter=config.use_scan_barycenter)
         old = max(0, newest - max(config.scan_buffer_size, QUERY_SCANS))
-        distance = np.hypot(poses[:old, 0] - poses[newest, 0], poses[:old, 1] - poses[newest, 1])
+        distance = np.hypot(centres[:old, 0] - centres[newest, 0], centres[:old, 1] - centres[newest, 1])
         near = np.flatnonzero(distance < config.loop_search_maximum_distance)
         if near.shape[0] == 0:
             return []
@@ -99,6 +101,14 @@ class LoopCloser:
                 closures.append(closure)
         return closures
 
+    def forget(self, index: int) -> None:
+        """Follow the removal of a key scan: those after it are numbered one lower."""
+        self._tried = [
+            (scan - (scan > index), place - (place > index))
+            for scan, place in self._tried
+            if index not in (scan, place)
+        ]
+
     def _match(
         self, clouds: Sequence[Cloud], poses: Array, members: NDArray[np.intp], closest: int, drift: float
     ) -> Edge | None:
@@ -112,13 +122,14 @@ class LoopCloser:
             resolution=RESOLUTION,
             deviation=RESOLUTION,
             distance_penalty=0.005,
-            minimum_score=MIN_LIKELIHOOD,
+            minimum_score=max(MIN_LIKELIHOOD, self.config.loop_match_minimum_response_coarse),
         )
         match = place.correlate(points, pose2.between(poses[closest], poses[newest]), window)
         if match is None:
             return None
         fine = place.refine(points, normals, match.pose)
-        if fine.inlier_ratio < MIN_INLIER_RATIO or fine.residual > MAX_RESIDUAL:
+        least = max(MIN_INLIER_RATIO, self.config.loop_match_minimum_response_fine)
+        if fine.inlier_ratio < least or fine.residual > MAX_RESIDUAL:
             return None
         information = match_information(fine.normal_matrix / QUERY_SCANS)
         return Edge(closest, newest, fine.pose, information, closure=True)

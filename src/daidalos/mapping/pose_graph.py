@@ -1,7 +1,7 @@
 """Pose graphs: least-squares poses from relative measurements with outliers."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -118,6 +118,57 @@ def optimize(poses: Array, edges: Sequence[Edge], *, chordal: bool = False) -> S
 def squared_errors(poses: Array, edges: Sequence[Edge]) -> Array:
     """Compute the squared whitened error of each edge, shape (m,)."""
     return _squared_errors(poses, _columns(edges))
+
+
+def without_pose(edges: Sequence[Edge], index: int) -> list[Edge]:
+    """Return a graph without one pose: its edges lead on from the neighbour that it is tied to best.
+
+    Parameters
+    ----------
+    edges : sequence of Edge
+        The graph.
+    index : int
+        The pose; those after it are numbered one lower in the result.
+    """
+    touching = [edge for edge in edges if index in (edge.first, edge.second)]
+    kept = [edge for edge in edges if index not in (edge.first, edge.second)]
+    if touching:
+        best = max(touching, key=lambda edge: (not edge.closure, float(np.linalg.det(edge.information))))
+        to_pose = best if best.second == index else _reversed(best)
+        for edge in touching:
+            away = edge if edge.first == index else _reversed(edge)
+            if edge is not best and away.second != to_pose.first:
+                kept.append(_forward(_chained(to_pose, away)))
+    return [
+        replace(edge, first=edge.first - (edge.first > index), second=edge.second - (edge.second > index))
+        for edge in kept
+    ]
+
+
+def _forward(edge: Edge) -> Edge:
+    return edge if edge.first < edge.second else _reversed(edge)
+
+
+def _reversed(edge: Edge) -> Edge:
+    """Return an edge from its second pose to its first one."""
+    turn = _adjoint(edge.measurement)
+    information: Array = np.linalg.inv(turn @ np.linalg.inv(edge.information) @ turn.T).astype(np.float64)
+    return Edge(edge.second, edge.first, pose2.inverse(edge.measurement), information, edge.closure)
+
+
+def _chained(first: Edge, second: Edge) -> Edge:
+    """Return the edge from the first pose of one edge over a common pose to the last pose of another."""
+    turn = _adjoint(pose2.inverse(second.measurement))
+    covariance = turn @ np.linalg.inv(first.information) @ turn.T + np.linalg.inv(second.information)
+    information: Array = np.linalg.inv(covariance).astype(np.float64)
+    measured = pose2.compose(first.measurement, second.measurement)
+    return Edge(first.first, second.second, measured, information, first.closure or second.closure)
+
+
+def _adjoint(pose: Array) -> Array:
+    """Return the matrix that carries small motions (x, y, yaw) in a frame at a pose to the frame it is given in."""
+    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
+    return np.array([[cosine, -sine, pose[1]], [sine, cosine, -pose[0]], [0.0, 0.0, 1.0]])
 
 
 def _columns(edges: Sequence[Edge]) -> _Edges:

@@ -32,6 +32,8 @@ class LaserScanData:
         Time between beams [s]; 0 where unknown.
     sensor_pose : tuple of float
         Pose (x, y, yaw) of the sensor in the frame of the base.
+    sensor_tilt : tuple of float
+        Roll and pitch [rad] of the sensor, applied before its yaw; a roll of pi is a lidar mounted upside down.
     """
 
     ranges: NDArray[np.floating]
@@ -41,6 +43,7 @@ class LaserScanData:
     range_max: float = np.inf
     time_increment: float = 0.0
     sensor_pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    sensor_tilt: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,31 @@ class Cloud:
     origin: Array
 
 
+def scan_problem(scan: LaserScanData) -> str:
+    """Return why a scan cannot be used, an empty string where it can."""
+    if not len(scan.ranges):
+        return "it has no ranges"
+    for name in ("angle_min", "angle_increment"):
+        if not np.isfinite(getattr(scan, name)):
+            return f"its {name} is {getattr(scan, name)}"
+    if scan.angle_increment == 0.0 and len(scan.ranges) > 1:
+        return "its angle_increment is 0"
+    if not scan.range_min <= scan.range_max:
+        return f"its range_min ({scan.range_min:g}) is not below its range_max ({scan.range_max:g})"
+    ranges = np.asarray(scan.ranges)
+    with np.errstate(invalid="ignore"):
+        usable = (ranges > 0.0) & np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
+    if not usable.any():
+        kinds = {
+            "NaN": np.isnan(ranges),
+            "infinite": np.isinf(ranges),
+            "0": ranges == 0.0,
+        }
+        found = next((f"are {kind}" for kind, holds in kinds.items() if holds.all()), "are outside of its range limits")
+        return f"all its {len(ranges)} ranges {found}"
+    return ""
+
+
 def to_cloud(scan: LaserScanData, max_range: float, twist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Cloud:
     """Convert ranges to points with normals.
 
@@ -90,8 +118,8 @@ def to_cloud(scan: LaserScanData, max_range: float, twist: tuple[float, float, f
     pose = np.array(scan.sensor_pose, dtype=np.float64)
     ends, normals, cleared = _ends_and_normals(
         ranges,
-        float(scan.angle_min),
-        float(scan.angle_increment),
+        _directions(scan),
+        abs(float(scan.angle_increment)),
         float(scan.range_min),
         float(scan.range_max),
         float(max_range),
@@ -103,11 +131,23 @@ def to_cloud(scan: LaserScanData, max_range: float, twist: tuple[float, float, f
     return Cloud(ends[kept], normals[kept], ends, cleared, pose[:2].copy())
 
 
+def _directions(scan: LaserScanData) -> Array:
+    """Return the horizontal part (n, 2) of every beam's unit vector in the frame of the base."""
+    angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
+    beams = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    roll, pitch = scan.sensor_tilt
+    yaw = scan.sensor_pose[2]
+    level = np.array([[np.cos(pitch), np.sin(pitch) * np.sin(roll)], [0.0, np.cos(roll)]])
+    turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
+    directions: Array = np.ascontiguousarray(beams @ (turn @ level).T)
+    return directions
+
+
 @compiled
 def _ends_and_normals(
     ranges: Array,
-    angle_min: float,
-    angle_increment: float,
+    directions: Array,
+    increment: float,
     range_min: float,
     range_max: float,
     max_range: float,
@@ -128,9 +168,8 @@ def _ends_and_normals(
         hit = distance <= max_range
         if not hit:
             distance = max_range
-        angle = sensor[2] + angle_min + i * angle_increment
-        x = sensor[0] + distance * np.cos(angle)
-        y = sensor[1] + distance * np.sin(angle)
+        x = sensor[0] + distance * directions[i, 0]
+        y = sensor[1] + distance * directions[i, 1]
         elapsed = i * time_increment
         if elapsed > 0.0:
             yaw = twist[2] * elapsed
@@ -150,7 +189,7 @@ def _ends_and_normals(
             cleared[misses, 1] = y
             misses += 1
     points = points[:hits].copy()
-    normals = _normals(points, reach[:hits], abs(angle_increment), sensor)
+    normals = _normals(points, reach[:hits], increment, sensor)
     return points, normals, cleared[:misses].copy()
 
 

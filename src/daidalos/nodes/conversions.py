@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.arrays import Array
-from daidalos.common.pose3 import quaternion_from_yaw, yaw_from_quaternion
+from daidalos.common.pose3 import quaternion_from_yaw, rotation_matrix, yaw_from_quaternion
 
 if TYPE_CHECKING:
     from daidalos.mapping.scan import LaserScanData
@@ -129,19 +129,45 @@ def grid_array(grid: Any) -> NDArray[np.int8]:
     return np.frombuffer(grid.data, dtype=np.int8).reshape(grid.info.height, grid.info.width)
 
 
-def scan_data(scan: Any, sensor_pose: Array) -> LaserScanData:
+class SensorMount(NamedTuple):
+    """Mounting of a sensor on the base.
+
+    Attributes
+    ----------
+    pose : ndarray, shape (3,)
+        Pose (x, y, yaw) in the frame of the base.
+    tilt : tuple of float
+        Roll and pitch [rad], applied before the yaw.
+    """
+
+    pose: Array
+    tilt: tuple[float, float]
+
+
+def mount_of_transform(transform: Any) -> SensorMount:
+    """Return a ``geometry_msgs/msg/Transform`` from the base to a sensor as a mounting."""
+    q = transform.rotation
+    matrix = rotation_matrix((q.x, q.y, q.z, q.w))
+    pitch = float(np.arcsin(np.clip(-matrix[2, 0], -1.0, 1.0)))
+    roll = float(np.arctan2(matrix[2, 1], matrix[2, 2]))
+    yaw = float(np.arctan2(matrix[1, 0], matrix[0, 0]))
+    return SensorMount(np.array([transform.translation.x, transform.translation.y, yaw]), (roll, pitch))
+
+
+def scan_data(scan: Any, sensor: Array | SensorMount) -> LaserScanData:
     """Return a ``sensor_msgs/msg/LaserScan`` as arrays.
 
     Parameters
     ----------
     scan
         The message.
-    sensor_pose : array (3,)
-        Pose (x, y, yaw) of the sensor in the base.
+    sensor : array (3,) or SensorMount
+        Pose (x, y, yaw) of the sensor in the base, or how it is mounted there.
     """
     from daidalos.mapping.scan import LaserScanData
 
-    x, y, yaw = (float(value) for value in sensor_pose)
+    pose, tilt = sensor if isinstance(sensor, SensorMount) else (sensor, (0.0, 0.0))
+    x, y, yaw = (float(value) for value in pose)
     return LaserScanData(
         ranges=np.frombuffer(scan.ranges, dtype=np.float32),
         angle_min=scan.angle_min,
@@ -150,4 +176,5 @@ def scan_data(scan: Any, sensor_pose: Array) -> LaserScanData:
         range_max=scan.range_max,
         time_increment=scan.time_increment,
         sensor_pose=(x, y, yaw),
+        sensor_tilt=tilt,
     )

@@ -8,7 +8,8 @@ from rclpy.time import Time
 from tf2_py import TransformException
 from tf2_ros import Buffer
 
-from daidalos.nodes.conversions import pose2_of_transform
+from daidalos.common.suggestions import hint
+from daidalos.nodes.conversions import SensorMount, mount_of_transform
 from daidalos.samples.fields import nanoseconds
 
 if TYPE_CHECKING:
@@ -69,17 +70,33 @@ class SensorPoses:
         self._buffer = buffer
         self._base_frame = base_frame
         self._logger = logger
-        self._poses: dict[str, Any] = {}
+        self._mounts: dict[str, SensorMount] = {}
 
     def find(self, frame: str) -> Any | None:
         """Return the pose (x, y, yaw) of the sensor of a frame, None while it is not known."""
-        if frame not in self._poses:
+        mount = self.mount(frame)
+        if mount is None:
+            self._logger.info(
+                f"waiting for the transform from {frame} to {self._base_frame}", throttle_duration_sec=5.0
+            )
+            return None
+        return mount.pose
+
+    def mount(self, frame: str) -> SensorMount | None:
+        """Return how the sensor of a frame is mounted, None while it is not known."""
+        if frame not in self._mounts:
             try:
                 found = self._buffer.lookup_transform(self._base_frame, frame, Time())
             except TransformException:
-                self._logger.info(
-                    f"waiting for the transform from {frame} to {self._base_frame}", throttle_duration_sec=5.0
-                )
                 return None
-            self._poses[frame] = pose2_of_transform(found.transform)
-        return self._poses[frame]
+            self._mounts[frame] = mount_of_transform(found.transform)
+        return self._mounts[frame]
+
+    def missing(self, frame: str) -> str:
+        """Return why the transform of a sensor is not known, with the frames that are."""
+        known = sorted(self._buffer._getFrameStrings())
+        unknown = [name for name in (frame, self._base_frame) if name not in known]
+        if not unknown:
+            return f"waiting for the transform from {frame} to {self._base_frame}, two frames that are not connected"
+        problem = " and ".join(f"there is no frame '{name}'" for name in unknown)
+        return f"waiting for the transform from {frame} to {self._base_frame}: {problem}{hint(unknown[0], known)}"

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from nav_msgs.msg import MapMetaData, OccupancyGrid
 from nav_msgs.srv import GetMap
+from rclpy.lifecycle import TransitionCallbackReturn
 from sensor_msgs.msg import LaserScan
 from slam_toolbox.srv import Reset, SaveMap
 from std_msgs.msg import String
@@ -22,7 +23,7 @@ from daidalos.mapping.evaluation import compare_with_truth
 from daidalos.mapping.grid import OccupancyGrid as Grid
 from daidalos.mapping.map_file import load_map
 from daidalos.nodes.conversions import grid_array, pose2_of, transform_stamped, yaw_of
-from daidalos.nodes.slam_toolbox.async_slam_toolbox_node import SlamToolbox
+from daidalos.nodes.slam_toolbox.async_slam_toolbox_node import AsynchronousSlamToolbox
 from mapping.worlds import Lidar, arena, drive, raster, wheel_odometry
 from nodes.stepped import LATCHED, Stage
 
@@ -50,9 +51,11 @@ def compiled() -> None:
 class Bench:
     """The node on a stage, with a lidar on a robot whose odometry drifts."""
 
-    def __init__(self, stage: Stage) -> None:
+    def __init__(self, stage: Stage, make: Callable[[], Any] = AsynchronousSlamToolbox) -> None:
         self.stage = stage
-        self.node = stage.add(SlamToolbox())
+        self.node = stage.add(make())
+        assert self.node.trigger_configure() == TransitionCallbackReturn.SUCCESS
+        assert self.node.trigger_activate() == TransitionCallbackReturn.SUCCESS
         self.maps = stage.collect(OccupancyGrid, "map", LATCHED)
         self.map_to_odom: list[Any] = []
         self._rng = np.random.default_rng(7)
