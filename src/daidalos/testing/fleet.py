@@ -1,124 +1,143 @@
-"""Runs of scenarios with other seeds and parameters, each in lock-step."""
+"""Fleets: all runs of a plan, on the processors of this machine or on a cluster."""
 
 from __future__ import annotations
 
-import json
-import re
-import shutil
-import sys
-import tempfile
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import os
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from daidalos.testing.documents import Document
-from daidalos.testing.processes import ScenarioProcess, scenario_environment
-from daidalos.testing.server import Request
+from daidalos.common.errors import UserError
+from daidalos.testing.documents import read_scenario
+from daidalos.testing.journal import Journal, Record
+from daidalos.testing.plan import Plan, Run
+from daidalos.testing.processes import ScenarioProcess
+from daidalos.testing.single import run_once
 
-if TYPE_CHECKING:
-    from daidalos.testing.scenario import Scenario
-
-
-@dataclass(frozen=True)
-class Result:
-    """Result of one run.
-
-    Parameters
-    ----------
-    passed : bool
-    message : str
-        What has failed; empty where it passed.
-    simulated_s : float
-        Simulated time at the end [s].
-    metrics : mapping of float
-        What was measured, by name.
-    folder : Path or None
-        Where the bag and the picture are; None where they are not kept.
-    """
-
-    passed: bool
-    message: str = ""
-    simulated_s: float = 0.0
-    metrics: Mapping[str, float] = field(default_factory=dict)
-    folder: Path | None = None
+PICTURES = "failures"
 
 
-def run_once(
-    process: ScenarioProcess, document: Document, seed: int, parameters: Mapping[str, Any], results: Path
-) -> Result:
-    """Run a scenario once; the bag and the picture of a failure are kept below a folder.
+def run_fleet(
+    plan: Plan, journal: Journal, processes: int, on_result: Callable[[Record], None], ray: str | None = None
+) -> None:
+    """Carry out the runs of a plan that the journal does not have yet.
 
     Parameters
     ----------
-    process : ScenarioProcess
-    document : Document
-    seed : int
-    parameters : mapping
-        In place of those of the file.
-    results : Path
-        The folder.
+    plan : Plan
+    journal : Journal
+        Gets the results.
+    processes : int
+        How many run at the same time on this machine.
+    on_result : callable
+        Called with each result.
+    ray : str, optional
+        Address of a cluster of Ray, on which they run instead; ``local`` starts one here.
+
+    Raises
+    ------
+    UserError
+        When the scenario is not valid, or Ray is not there.
     """
-    folder = Path(tempfile.mkdtemp(prefix="daidalos-scenario-"))
+    first = plan.runs()[0] if plan.count else None
+    read_scenario(plan.scenario, None if first is None else first.parameters)  # a fault is better told at once
+    missing = [run for run in plan.runs() if run.number not in journal.records]
+    results = _on_cluster(plan, missing, journal, ray) if ray is not None else _here(plan, missing, journal, processes)
+    for record in results:
+        journal.add(record)
+        on_result(record)
+
+
+def _here(plan: Plan, runs: Sequence[Run], journal: Journal, count: int) -> Iterator[Record]:
+    """Yield the results of runs on this machine as they come."""
+    free: queue.SimpleQueue[ScenarioProcess] = queue.SimpleQueue()
+    workers = [ScenarioProcess() for _ in range(max(1, min(count, len(runs))))]
+    for worker in workers:
+        free.put(worker)
+    stop = threading.Event()
+
+    def carry_out(run: Run) -> Record | None:
+        if stop.is_set():
+            return None
+        process = free.get()
+        try:
+            return run_one(process, plan.scenario, run, journal.folder)
+        finally:
+            free.put(process)
+
+    with ThreadPoolExecutor(len(workers)) as pool:
+        pending: set[Future[Record | None]] = {pool.submit(carry_out, run) for run in runs}
+        try:
+            while pending:
+                done, pending = wait(pending, return_when=FIRST_COMPLETED)
+                for future in done:
+                    record = future.result()
+                    if record is not None:
+                        yield record
+        finally:
+            stop.set()
+            for worker in workers:
+                worker.close()
+
+
+def run_one(process: ScenarioProcess, scenario: Path, run: Run, folder: Path) -> Record:
+    """Carry out one run in a process; its picture is kept below a folder where it fails."""
+    begun = time.perf_counter()
+    document = read_scenario(scenario, run.parameters)
+    result = run_once(process, document, run.seed, run.parameters, folder / PICTURES, record=False)
+    return Record(
+        run.number,
+        run.seed,
+        dict(run.parameters),
+        result.passed,
+        result.message,
+        result.simulated_s,
+        round(time.perf_counter() - begun, 3),
+        dict(result.metrics),
+        "" if result.folder is None else result.folder.relative_to(folder).as_posix(),
+    )
+
+
+def _on_cluster(plan: Plan, runs: Sequence[Run], journal: Journal, address: str) -> Iterator[Record]:
+    """Yield the results of runs on a cluster of Ray as they come; all its machines see the same folders."""
+    if find_spec("ray") is None:
+        raise UserError("a cluster needs Ray: pip install 'daidalos[cluster]'")
+    import ray
+
+    ray.init(address=None if address == "local" else address, logging_level="ERROR", log_to_driver=False)
+
+    class Worker:
+        """Process of the scenarios on a machine of the cluster."""
+
+        def __init__(self) -> None:
+            self._process = ScenarioProcess()
+
+        def run(self, run: Run) -> Record:
+            """Carry out a run."""
+            return run_one(self._process, plan.scenario.resolve(), run, journal.folder.resolve())
+
+    remote: Any = ray.remote(Worker)
+    workers: list[Any] = [remote.remote() for _ in range(max(1, int(ray.cluster_resources().get("CPU", 1))))]
+    waiting = list(reversed(runs))
+    busy: dict[Any, Any] = {}
     try:
-        request = Request(
-            "daidalos.testing.fleet:perform",
-            {"path": str(document.path.resolve()), "result": str(folder / "result.json")},
-            seed,
-            document.timeout,
-            str(folder),
-            str(Path.cwd()),
-            scenario_environment(),
-            tuple(sys.path),
-            dict(parameters),
-            pictures=document.pictures,
-        )
-        status = process.run(request)
-        result = _read_result(folder / "result.json", status)
-        if result.passed:
-            return result
-        goal = results / f"{slug(document.name)}-{seed}"
-        shutil.rmtree(goal, ignore_errors=True)
-        goal.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copytree(folder, goal)
-        return Result(False, result.message, result.simulated_s, result.metrics, goal)
+        while waiting or busy:
+            while workers and waiting:
+                worker = workers.pop()
+                busy[worker.run.remote(waiting.pop())] = worker
+            done, _ = ray.wait(list(busy), num_returns=1)
+            for reference in done:
+                workers.append(busy.pop(reference))
+                yield ray.get(reference)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        ray.shutdown()
 
 
-def slug(name: str) -> str:
-    """Return a name as that of a folder."""
-    return re.sub(r"[^\w.=-]+", "-", name).strip("-")
-
-
-def _read_result(path: Path, status: int) -> Result:
-    if not path.is_file():
-        what = f"was ended by signal {-status}" if status < 0 else f"ended with status {status}"
-        return Result(False, f"the process of the scenario {what}; its output says why")
-    data = json.loads(path.read_text(encoding="utf-8"))
-    path.unlink()
-    return Result(data["passed"], data["message"], data["simulated_s"], data["metrics"])
-
-
-def perform(scenario: Scenario, path: str, result: str) -> int:
-    """Run the scenario of a file, and write its result as JSON; called in the process of the scenario."""
-    from daidalos.common.errors import UserError
-    from daidalos.testing.pictures import draw_failure
-    from daidalos.testing.scenario import ScenarioFailure
-    from daidalos.testing.steps import run_document
-
-    message = ""
-    try:
-        run_document(scenario, path)
-        scenario.check()
-    except (ScenarioFailure, UserError) as failure:
-        message = str(failure)
-        draw_failure(scenario, scenario.folder / "failure.png", Path(path).name)
-    report = {
-        "passed": not message,
-        "message": message,
-        "simulated_s": round(scenario.now, 6),
-        "metrics": scenario.metrics,
-    }
-    Path(result).write_text(json.dumps(report), encoding="utf-8")
-    return 0
+def default_processes() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

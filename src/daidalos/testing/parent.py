@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 
 from daidalos.common.suggestions import hint
-from daidalos.testing.fleet import slug
 from daidalos.testing.plugin import TIMEOUT_S
 from daidalos.testing.processes import ScenarioProcess, scenario_environment
 from daidalos.testing.server import Request
+from daidalos.testing.single import slug
 
 _MARK = {"timeout": TIMEOUT_S, "seed": 0, "world": None, "robot": None, "record": True, "pictures": False}
 _OF_THE_SESSION: dict[str, Any] = {

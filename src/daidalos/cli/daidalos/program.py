@@ -15,6 +15,7 @@ from daidalos.common.errors import UserError
 from daidalos.common.extensions import ExtensionError, Kind
 
 _DESCRIPTIONS = {
+    "bench": "Run a scenario many times, with other seeds and parameters",
     "demo": "A robot that maps an arena and drives where it is sent",
     "diff": "Compare two bags, message by message",
     "extensions": "List what can be extended, and the extensions that are there",

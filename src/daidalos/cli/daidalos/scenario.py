@@ -42,8 +42,8 @@ class ScenarioVerb:
 def _run(args: argparse.Namespace) -> int:
     """Run the scenarios one after the other; return 0 when all have passed."""
     from daidalos.testing.documents import read_scenario
-    from daidalos.testing.fleet import run_once
     from daidalos.testing.processes import ScenarioProcess
+    from daidalos.testing.single import run_once
 
     given = dict(_parse_setting(text) for text in args.set)
     documents = [read_scenario(path, given) for path in args.files]  # a fault is better told before anything runs

@@ -1,0 +1,133 @@
+"""One run of a scenario with a seed and parameters of its own, in lock-step."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daidalos.testing.documents import Document
+from daidalos.testing.processes import ScenarioProcess, scenario_environment
+from daidalos.testing.server import Request
+
+if TYPE_CHECKING:
+    from daidalos.testing.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Result:
+    """Result of one run.
+
+    Parameters
+    ----------
+    passed : bool
+    message : str
+        What has failed; empty where it passed.
+    simulated_s : float
+        Simulated time at the end [s].
+    metrics : mapping of float
+        What was measured, by name.
+    folder : Path or None
+        Where the bag and the picture are; None where they are not kept.
+    """
+
+    passed: bool
+    message: str = ""
+    simulated_s: float = 0.0
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    folder: Path | None = None
+
+
+def run_once(
+    process: ScenarioProcess,
+    document: Document,
+    seed: int,
+    parameters: Mapping[str, Any],
+    results: Path,
+    *,
+    record: bool = True,
+) -> Result:
+    """Run a scenario once; the bag and the picture of a failure are kept below a folder.
+
+    Parameters
+    ----------
+    process : ScenarioProcess
+    document : Document
+    seed : int
+    parameters : mapping
+        In place of those of the file.
+    results : Path
+        The folder.
+    record : bool
+        Whether to record a bag.
+    """
+    folder = Path(tempfile.mkdtemp(prefix="daidalos-scenario-"))
+    try:
+        request = Request(
+            "daidalos.testing.single:perform",
+            {"path": str(document.path.resolve()), "result": str(folder / "result.json")},
+            seed,
+            document.timeout,
+            str(folder),
+            str(Path.cwd()),
+            scenario_environment(),
+            tuple(sys.path),
+            dict(parameters),
+            record,
+            pictures=document.pictures,
+        )
+        status = process.run(request)
+        result = _read_result(folder / "result.json", status)
+        if result.passed:
+            return result
+        goal = results / f"{slug(document.name)}-{seed}"
+        shutil.rmtree(goal, ignore_errors=True)
+        goal.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(folder, goal)
+        return Result(False, result.message, result.simulated_s, result.metrics, goal)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def slug(name: str) -> str:
+    """Return a name as that of a folder."""
+    return re.sub(r"[^\w.=-]+", "-", name).strip("-")
+
+
+def _read_result(path: Path, status: int) -> Result:
+    if not path.is_file():
+        what = f"was ended by signal {-status}" if status < 0 else f"ended with status {status}"
+        return Result(False, f"the process of the scenario {what}; its output says why")
+    data = json.loads(path.read_text(encoding="utf-8"))
+    path.unlink()
+    return Result(data["passed"], data["message"], data["simulated_s"], data["metrics"])
+
+
+def perform(scenario: Scenario, path: str, result: str) -> int:
+    """Run the scenario of a file, and write its result as JSON; called in the process of the scenario."""
+    from daidalos.common.errors import UserError
+    from daidalos.testing.pictures import draw_failure
+    from daidalos.testing.scenario import ScenarioFailure
+    from daidalos.testing.steps import run_document
+
+    message = ""
+    try:
+        run_document(scenario, path)
+        scenario.check()
+    except (ScenarioFailure, UserError) as failure:
+        message = str(failure)
+        draw_failure(scenario, scenario.folder / "failure.png", Path(path).name)
+    report = {
+        "passed": not message,
+        "message": message,
+        "simulated_s": round(scenario.now, 6),
+        "metrics": scenario.metrics,
+    }
+    Path(result).write_text(json.dumps(report), encoding="utf-8")
+    return 0
