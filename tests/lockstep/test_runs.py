@@ -14,15 +14,17 @@ from daidalos.lockstep.options import Options
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the runs are interrupted by signals")
 
 
-def run(*command: object, folder: Path, options: Options | None = None) -> subprocess.CompletedProcess[str]:
+def run(
+    *command: object, folder: Path, options: Options | None = None, hash_seed: int = 0
+) -> subprocess.CompletedProcess[str]:
     words = (options or Options()).words()
     start = [sys.executable, "-m", "daidalos.lockstep.start", *words, "--", *map(str, command)]
     environment = os.environ | {
         "RMW_IMPLEMENTATION": "rmw_daidalos_inprocess",
-        "PYTHONHASHSEED": "0",
+        "PYTHONHASHSEED": str(hash_seed),
         "ROS_HOME": str(folder / "ros"),
     }
-    return subprocess.run(start, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(start, cwd=folder, env=environment, capture_output=True, text=True, timeout=600, check=False)
 
 
 def script(folder: Path, text: str, name: str = "program.py") -> Path:
