@@ -12,7 +12,7 @@ from daidalos.lockstep.options import Options
 def test_the_options_are_read_as_they_are_written() -> None:
     parser = ArgumentParser()
     options.add_options(parser)
-    for written in (Options(), Options(7, 1.5, "a folder"), Options(until_s=1e-9)):
+    for written in (Options(), Options(7, 1.5, "a folder", "^/camera/|/tf$"), Options(until_s=1e-9)):
         assert Options.of(parser.parse_args(written.words())) == written
 
 

@@ -22,22 +22,26 @@ class Options:
         Simulated time [s] after which the run ends.
     bag : str, optional
         Folder of the bag to which all topics are recorded.
+    exclude : str, optional
+        Regular expression of topics that are not recorded.
     """
 
     seed: int = 0
     until_s: float | None = None
     bag: str | None = None
+    exclude: str | None = None
 
     @classmethod
     def of(cls, args: Namespace) -> Options:
         """Return the options of a parsed command line."""
-        return cls(args.seed or 0, args.until, args.bag)
+        return cls(args.seed or 0, args.until, args.bag, args.exclude_regex)
 
     def words(self) -> list[str]:
         """Return them as words of a command line."""
         until = [] if self.until_s is None else ["--until", repr(self.until_s)]
         bag = [] if self.bag is None else ["--bag", self.bag]
-        return ["--seed", str(self.seed), *until, *bag]
+        exclude = [] if self.exclude is None else ["--exclude-regex", self.exclude]
+        return ["--seed", str(self.seed), *until, *bag, *exclude]
 
 
 def add_arguments(parser: ArgumentParser, *, seed: bool = True) -> None:
@@ -65,12 +69,17 @@ def add_options(parser: _ActionsContainer, *, seed: bool = True) -> None:
         parser.add_argument("--seed", type=int, metavar="N", help="Seed of all random numbers (default: 0)")
     parser.add_argument("--until", type=_positive, metavar="S", help="Stop the run after S simulated seconds")
     parser.add_argument("--bag", metavar="FOLDER", help="Record all topics to a bag")
+    parser.add_argument(
+        "--exclude-regex",
+        metavar="REGEX",
+        help="Topics that are not recorded, such as those of cameras",
+    )
 
 
 def check(args: Namespace, *, seed: bool = True) -> None:
     """Raise UserError for an option of a run without ``--lockstep``; see `add_arguments`."""
-    names = ("seed", "until", "bag") if seed else ("until", "bag")
-    given = [f"--{name}" for name in names if getattr(args, name) is not None]
+    names = ("seed", "until", "bag", "exclude_regex")[0 if seed else 1 :]
+    given = [f"--{name.replace('_', '-')}" for name in names if getattr(args, name) is not None]
     if given and not args.lockstep:
         raise UserError(f"{' and '.join(given)} only act together with --lockstep")
 

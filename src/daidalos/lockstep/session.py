@@ -14,13 +14,14 @@ from launch._process import start_processes_by
 
 from daidalos.lockstep.commands import body_of
 from daidalos.lockstep.launched import ProgramStarter
+from daidalos.lockstep.options import Options
 from daidalos.lockstep.programs import Program, change_folder
 from daidalos.lockstep.run import Run
 from daidalos.lockstep.scheduler import LockstepError
 from daidalos.lockstep.standstill import long_waits
 
 
-def start(run: Run, command: list[str], until_s: float | None, bag: str | None) -> Program:
+def start(run: Run, command: list[str], options: Options) -> Program:
     """Start a command, and with it the recorder of a bag.
 
     Parameters
@@ -28,10 +29,8 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     run : Run
     command : list of str
         The command line.
-    until_s : float, optional
-        Simulated time [s] after which the command's launch is shut down, or else the command interrupted.
-    bag : str, optional
-        Folder of the bag to which all topics are recorded.
+    options : Options
+        When the command's launch is shut down, or else the command interrupted, and what is recorded.
 
     Raises
     ------
@@ -40,9 +39,10 @@ def start(run: Run, command: list[str], until_s: float | None, bag: str | None) 
     """
     install(run)
     program = _program(run, command)
-    if bag is not None:
-        _start_recorder(run, program, bag)
+    if options.bag is not None:
+        _start_recorder(run, program, options.bag, options.exclude)
     program.start()
+    until_s = options.until_s
     if until_s is not None:
         run.scheduler.spawn(lambda: _end_at(run, program, until_s), run.programs[0], "--until")
     return program
@@ -101,7 +101,7 @@ def _program(run: Run, command: list[str], on_output: Callable[[int, bytes], obj
     return run.create(body, argv, on_output=on_output)
 
 
-def _start_recorder(run: Run, program: Program, bag: str) -> None:
+def _start_recorder(run: Run, program: Program, bag: str, exclude: str | None) -> None:
     """Record until the program ends; a recorder that fails ends the run."""
     errors = sys.stderr
 
@@ -110,6 +110,8 @@ def _start_recorder(run: Run, program: Program, bag: str) -> None:
             errors.write(data.decode(errors="replace"))
 
     command = ["ros2", "bag", "record", "--all", "--log-level", "warn", "--output", bag]
+    if exclude is not None:
+        command += ["--exclude-regex", exclude]
     recorder = _program(run, command, show)
 
     def check(status: int) -> None:

@@ -58,7 +58,7 @@ def main() -> None:
     from daidalos.lockstep.session import start
 
     try:
-        program = start(run, args.command, options.until_s, options.bag)
+        program = start(run, args.command, options)
         run.go()
         status = exit_status(run, program)
     except LockstepError as error:

@@ -34,6 +34,8 @@ bit for bit."""
 
 _LAUNCH = ("daidalos_demo", "demo.launch.py")
 _TRIAL_DOMAIN = 97
+_PICTURES = "^/camera/"
+"""Topics that the recording leaves out unless others are named: they would be gigabytes, and depend on the renderer."""
 _END_S = 5.0
 
 
@@ -84,9 +86,9 @@ def _restart_in_lockstep(arguments: argparse.Namespace) -> int:
     from daidalos.lockstep.start import replace_process
 
     words = ["--headless", "--seed", str(arguments.seed), "--goals", str(arguments.goals)]
-    return replace_process(
-        ["daidalos", "demo", *words, *(["--json"] if arguments.json else [])], options.Options.of(arguments)
-    )
+    command = ["daidalos", "demo", *words, *(["--json"] if arguments.json else [])]
+    run = options.Options.of(arguments)
+    return replace_process(command, run if run.exclude is not None else replace(run, exclude=_PICTURES))
 
 
 def _try_out(arguments: argparse.Namespace) -> int:
