@@ -27,6 +27,7 @@ import { Marker } from "../generated/visualization_msgs";
 import type { Assets } from "../scene/assets";
 import { wrapBox, wrapRound } from "../scene/wrapping";
 import { PointSprites } from "../scene/point_sprites";
+import { setShadowing } from "../scene/shadowing";
 import { arrowGeometry, Label } from "../scene/shapes";
 import { setVeiled } from "../scene/veil";
 
@@ -103,7 +104,7 @@ function sized(geometry: BufferGeometry, marker: Marker, { assets, changed, onEr
 
 function solid(geometry: BufferGeometry, marker: Marker): Mesh<BufferGeometry, MeshStandardMaterial> {
   const object = new Mesh(geometry, material(marker.color));
-  object.castShadow = marker.color.a >= 1;
+  setShadowing(object, marker.color.a >= 1);
   object.userData.pickable = true;
   setVeiled(object, marker.color.a < 1);
   return object;
@@ -217,7 +218,7 @@ function mesh(marker: Marker, { assets, changed, onError }: MarkerContext): Obje
     .then((model) => {
       model.traverse((object) => {
         object.userData.pickable = object instanceof Mesh;
-        object.castShadow = object instanceof Mesh && marker.color.a >= 1;
+        setShadowing(object, object instanceof Mesh && marker.color.a >= 1);
         if (object instanceof Mesh && !marker.mesh_use_embedded_materials) {
           object.material = material(marker.color);
         }
@@ -250,7 +251,7 @@ function triangles(marker: Marker): Object3D {
   style.vertexColors = painted;
   style.side = 2;
   const object = new Mesh(geometry, style as Material);
-  object.castShadow = marker.color.a >= 1;
+  setShadowing(object, marker.color.a >= 1);
   object.userData.pickable = true;
   return object;
 }

@@ -24,4 +24,26 @@ describe("the shadow", () => {
     const lights = new Lights();
     expect(radiusFrom(lights, 10)).toBe(radiusFrom(lights, 10.3));
   });
+
+  it("is drawn anew when bodies or what is followed have moved, not when the camera has", () => {
+    const lights = new Lights();
+    lights.shadows = "soft";
+    const { shadow } = lights.object.children.find(
+      (each) => each instanceof DirectionalLight && each.castShadow,
+    ) as DirectionalLight;
+    const isDrawnAnew = (change: () => void): boolean => {
+      shadow.needsUpdate = false;
+      change();
+      return shadow.needsUpdate;
+    };
+    lights.follow({ x: 1, y: 2 }, 3);
+    expect(shadow.autoUpdate).toBe(false);
+    expect(isDrawnAnew(() => lights.follow({ x: 1, y: 2 }, 3))).toBe(false);
+    expect(isDrawnAnew(() => lights.follow({ x: 1.5, y: 2 }, 3))).toBe(true);
+    expect(isDrawnAnew(() => lights.follow({ x: 1.5, y: 2 }, 30))).toBe(true);
+    expect(isDrawnAnew(() => lights.refresh())).toBe(true);
+    lights.shadows = "flat";
+    expect(lights.object.children.some((each) => each.castShadow)).toBe(false);
+    expect(lights.flat.on).toBe(true);
+  });
 });

@@ -1,7 +1,9 @@
 // Light that shapes the robot, and a soft shadow that puts it on the ground.
-import { DirectionalLight, Group, HemisphereLight, Mesh, PlaneGeometry, ShadowMaterial, type Vector3 } from "three";
+import { DirectionalLight, Group, HemisphereLight, Mesh, PlaneGeometry, ShadowMaterial, Vector3 } from "three";
+import { FlatShadows } from "./flat_shadows";
 import { Layer } from "./layers";
 import type { Look } from "./looks";
+import type { Shadows } from "./quality";
 
 /** The shadow is drawn only near what the camera follows: software renderers pay for every pixel of it. */
 const SHADOW_RADIUS_M = 2.5;
@@ -9,6 +11,7 @@ const SHADOW_RADIUS_M = 2.5;
 const SHADOW_STEP = 1.25;
 const SHADOW_PER_DISTANCE = 0.75;
 const MAX_STEPS = 8;
+const SHADE = 0x05080d;
 const SUN_OFFSET = [1.6, -2.2, 4.2] as const;
 
 export class Lights {
@@ -18,13 +21,15 @@ export class Lights {
   private readonly fill = new DirectionalLight(0xbfd4ff);
   private readonly ground: Mesh;
   private steps = -1;
-  private readonly shade = new ShadowMaterial({ color: 0x05080d, opacity: 0.34, depthWrite: false });
+  private readonly shade = new ShadowMaterial({ color: SHADE, opacity: 0.34, depthWrite: false });
+  readonly flat = new FlatShadows(new Vector3(...SUN_OFFSET), SHADE);
 
   constructor() {
     this.sky.position.set(0, 0, 1);
     this.fill.position.set(-3, 2, 1.5);
     const { shadow } = this.sun;
-    shadow.mapSize.set(1024, 1024);
+    shadow.mapSize.set(2048, 2048);
+    shadow.autoUpdate = false;
     shadow.normalBias = 0.01;
     this.sun.castShadow = true;
     this.ground = new Mesh(new PlaneGeometry(2 * SHADOW_RADIUS_M, 2 * SHADOW_RADIUS_M), this.shade);
@@ -34,13 +39,19 @@ export class Lights {
     this.follow({ x: 0, y: 0, z: 0 } as Vector3);
   }
 
-  set shadows(on: boolean) {
-    this.sun.castShadow = on;
-    this.ground.visible = on;
+  set shadows(shadows: Shadows) {
+    this.sun.castShadow = this.ground.visible = shadows === "soft";
+    this.flat.on = shadows === "flat";
+    this.refresh();
+  }
+
+  /** Draw the shadow's map anew with the next frame: something that casts a shadow may have changed. */
+  refresh(): void {
+    this.sun.shadow.needsUpdate = true;
   }
 
   set look({ sun, sky, fill, bounce, shade }: Look) {
-    this.shade.opacity = shade;
+    this.shade.opacity = this.flat.opacity = shade;
     [this.sun.intensity, this.sky.intensity, this.fill.intensity] = [sun, sky, fill];
     this.sky.groundColor.set(bounce);
   }
@@ -49,6 +60,10 @@ export class Lights {
   follow(center: Pick<Vector3, "x" | "y">, distance = 0): void {
     const wanted = Math.log((distance * SHADOW_PER_DISTANCE) / SHADOW_RADIUS_M) / Math.log(SHADOW_STEP);
     const steps = Math.min(MAX_STEPS, Math.max(0, Math.round(wanted)));
+    const { x: oldX, y: oldY } = this.ground.position;
+    if (steps !== this.steps || center.x !== oldX || center.y !== oldY) {
+      this.refresh();
+    }
     if (steps !== this.steps) {
       this.steps = steps;
       this.widen();

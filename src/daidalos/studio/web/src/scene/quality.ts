@@ -7,12 +7,16 @@ const LATE_FRAMES = 20;
 const EARLY_FRAMES = 600;
 /** In software every frame takes the processor from the robot's programs: fewer must do. */
 const LEVELS = [
-  { share: 1, shadows: true, period: 1 / 30, late: 1 / 22 },
-  { share: 1, shadows: false, period: 1 / 24, late: 1 / 12 },
-  { share: 0.75, shadows: false, period: 1 / 20, late: 1 / 11 },
-  { share: 0.75, shadows: false, period: 1 / 12, late: Infinity },
+  { share: 1, shadows: "soft", period: 1 / 30, late: 1 / 22 },
+  { share: 1, shadows: "flat", period: 1 / 24, late: 1 / 12 },
+  { share: 1, shadows: "none", period: 1 / 24, late: 1 / 12 },
+  { share: 0.75, shadows: "none", period: 1 / 20, late: 1 / 11 },
+  { share: 0.75, shadows: "none", period: 1 / 12, late: Infinity },
 ] as const;
 const SHARPEST = 2;
+
+/** Soft ones fall on everything, flat ones on the ground alone, with hard edges. */
+export type Shadows = "soft" | "flat" | "none";
 
 export class Quality {
   private level = beginsFine ? 0 : 1;
@@ -22,7 +26,7 @@ export class Quality {
   /** Going back and forth would flicker: what was too slow once is not tried a second time. */
   private mayRise = true;
 
-  get shadows(): boolean {
+  get shadows(): Shadows {
     return this.step.shadows;
   }
 

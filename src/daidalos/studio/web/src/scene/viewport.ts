@@ -36,7 +36,12 @@ export class Viewport {
 
   constructor(private readonly container: HTMLElement) {
     // Transparent: sky and ground are the container's background, which costs nothing here.
-    this.renderer = new WebGLRenderer({ antialias: beginsFine, alpha: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({
+      antialias: beginsFine,
+      alpha: true,
+      stencil: true,
+      powerPreference: "high-performance",
+    });
     this.renderer.setClearColor(new Color(0), 0);
     this.renderer.shadowMap.type = PCFShadowMap;
     this.canvas = this.renderer.domElement;
@@ -44,7 +49,7 @@ export class Viewport {
     this.canvas.addEventListener("webglcontextrestored", this.invalidate);
     container.append(this.canvas);
     this.view = new View(this.canvas);
-    this.view.onChange = () => this.invalidate();
+    this.view.onChange = () => (this.dirty = true);
     this.scene.add(this.lights.object);
     this.applyQuality();
   }
@@ -68,9 +73,10 @@ export class Viewport {
     return this.size.x / this.size.y;
   }
 
-  /** Something looks different now. */
+  /** Something looks different now, and so may its shadow; a camera that moves leaves shadows as they are. */
   invalidate = (): void => {
     this.dirty = true;
+    this.lights.refresh();
   };
 
   resize(width: number, height: number): void {
@@ -155,7 +161,7 @@ export class Viewport {
 
   private applyQuality(): void {
     this.renderer.setPixelRatio(this.quality.pixelRatio);
-    this.renderer.shadowMap.enabled = this.quality.shadows;
+    this.renderer.shadowMap.enabled = this.quality.shadows === "soft";
     this.lights.shadows = this.quality.shadows;
     this.dirty = true;
   }
@@ -165,5 +171,6 @@ export class Viewport {
     this.drawn++;
     this.drawBackground();
     this.renderer.render(this.scene, this.view.camera);
+    this.lights.flat.draw(this.renderer, this.scene, this.view.camera);
   }
 }

@@ -16,6 +16,7 @@ import {
 import URDFLoader, { type URDFCollider, type URDFLink, type URDFVisual } from "urdf-loader";
 import type { String as StringMessage } from "../../generated/std_msgs";
 import { plainMaterial } from "../../scene/assets";
+import { setShadowing } from "../../scene/shadowing";
 import { isVeil, setVeiled } from "../../scene/veil";
 import type { Settings } from "../../contract";
 import { disposeTree, place, type DisplayContext, type FrameInfo, type BuiltInDisplay } from "../display";
@@ -291,7 +292,7 @@ function styleMesh(object: Object3D, alpha: number, collides: boolean): void {
   if (!(object instanceof Mesh) || isVeil(object)) {
     return;
   }
-  object.castShadow = !collides;
+  setShadowing(object, !collides);
   object.userData.pickable = !collides;
   for (const material of [object.material].flat() as Surface[]) {
     material.userData.opacity ??= material.opacity;
