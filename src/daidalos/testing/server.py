@@ -68,6 +68,8 @@ class Request:
         Whether to record a bag.
     pictures : bool
         Whether the bag has images and point clouds as well.
+    quiet : bool
+        Whether the output goes to the file ``output.txt`` of the folder.
     """
 
     target: str
@@ -81,6 +83,7 @@ class Request:
     parameters: dict[str, Any] = field(default_factory=dict)
     record: bool = True
     pictures: bool = False
+    quiet: bool = False
 
 
 def main() -> None:
@@ -164,6 +167,8 @@ def _carry_out(run: Any, data: bytes) -> int:
     os.environ.update(request.environ)
     sys.path[:] = request.path
     os.chdir(request.cwd)
+    if request.quiet:
+        _write_output_to(os.path.join(request.folder, "output.txt"))
     run.reseed(request.seed)
     install(run)
     module, _, name = request.target.partition(":")
@@ -189,6 +194,13 @@ def _carry_out(run: Any, data: bytes) -> int:
         with contextlib.suppress(ValueError, io.UnsupportedOperation):
             stream.flush()
     return status
+
+
+def _write_output_to(path: str) -> None:
+    output = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+    for descriptor in (1, 2):
+        os.dup2(output, descriptor)
+    os.close(output)
 
 
 def _scenario(run: Any, program: Any, request: Request) -> Scenario:

@@ -65,7 +65,7 @@ def run_once(
     results : Path
         The folder.
     record : bool
-        Whether to record a bag.
+        Whether to record a bag; where not, the output is written to a file beside the picture.
     """
     folder = Path(tempfile.mkdtemp(prefix="daidalos-scenario-"))
     try:
@@ -81,6 +81,7 @@ def run_once(
             dict(parameters),
             record,
             pictures=document.pictures,
+            quiet=not record,
         )
         status = process.run(request)
         result = _read_result(folder / "result.json", status)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from daidalos.common.errors import UserError
 from daidalos.common.pose3 import Pose
 from daidalos.common.suggestions import hint
+from daidalos.nodes.gazebo_ros.built_in import find_model_file, find_world_file
 from daidalos.testing.graph import PoseValue
 from daidalos.testing.programs import Nodes
 from daidalos.testing.scenario import Scenario, ScenarioFailure
@@ -264,7 +265,7 @@ class World:
         """
         from daidalos.nodes.description_files import read_description
 
-        path = _find_model_file(str(model))
+        path = find_model_file(str(model))
         wanted = name or (str(model) if str(model) != str(path) else path.name.partition(".")[0])
         pose = Pose.from_xyz_rpy((x, y, z), (0.0, 0.0, yaw))
         added = self.host.spawn(read_description(path), wanted, pose, "", namespace)
@@ -366,38 +367,6 @@ class World:
         if server is not None and not server.is_alive:
             raise ScenarioFailure("the simulator has ended; its output says why")
         return self._server() is not None
-
-
-def find_world_file(name: str) -> Path:
-    """Return the file of a world, by its path or the name of a built-in one.
-
-    Raises
-    ------
-    UserError
-        With similar names.
-    """
-    from daidalos.interfaces.library import BUILT_IN
-
-    path = Path(name)
-    if path.is_file():
-        return path.resolve()
-    known = {file.stem: file for file in sorted(BUILT_IN.glob("*/worlds/*.world"))}
-    if name not in known:
-        raise UserError(f"there is no world file '{name}'{hint(name, known)}")
-    return known[name]
-
-
-def _find_model_file(name: str) -> Path:
-    from daidalos.interfaces.library import BUILT_IN
-
-    path = Path(name)
-    if path.is_file():
-        return path.resolve()
-    folder = BUILT_IN / "turtlebot3_description" / "urdf"
-    known = {robot: folder / f"turtlebot3_{robot}.urdf.xacro" for robot in ("burger", "waffle")}
-    if name not in known:
-        raise UserError(f"there is no robot or model file '{name}'{hint(name, known)}")
-    return known[name]
 
 
 def _simple_model(name: str, shape: Any, height: float, *, is_scripted: bool) -> Any:
