@@ -17,7 +17,7 @@ from daidalos.studio import client as client_module
 from daidalos.studio import connections
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.connections import Connection, Connections
-from daidalos.studio.limits import MAX_ENTRIES, MAX_ERRORS, MAX_PUBLICATIONS
+from daidalos.studio.limits import MAX_ENTRIES, MAX_ERRORS, MAX_PUBLICATIONS, PIECE_BYTES, SLICE_REQUESTS, Turn
 from daidalos.studio.protocol import SUBPROTOCOLS
 from daidalos.studio.server import StudioServer
 
@@ -259,3 +259,67 @@ def test_memory_that_waits_to_be_read_is_taken_from_who_reads_least(monkeypatch)
         assert [bool(stream.reason) for stream in streams] == [False, True]
 
     asyncio.run(run())
+
+
+def test_clients_take_turns_and_leave_time_to_everything_else():
+    async def main() -> tuple[list[str], int]:
+        order, handled, looks = asyncio.Lock(), [], 0
+
+        async def ask(name: str) -> None:
+            turn = Turn(order)
+            for _ in range(10 * SLICE_REQUESTS):
+                async with turn:
+                    handled.append(name)
+
+        async def look() -> None:
+            nonlocal looks
+            while True:
+                looks += 1
+                await asyncio.sleep(0)
+
+        looking = asyncio.create_task(look())
+        await asyncio.gather(ask("a"), ask("b"))
+        looking.cancel()
+        return handled, looks
+
+    handled, looks = asyncio.run(main())
+    assert handled[100:200].count("a") == handled[100:200].count("b")
+    assert looks >= len(handled) // SLICE_REQUESTS
+
+
+def test_what_a_client_sends_at_once_becomes_messages_piece_by_piece():
+    class Parser(asyncio.Protocol):
+        def __init__(self) -> None:
+            self.pieces: list[int] = []
+            self.come = asyncio.Event()
+
+        def data_received(self, data: bytes) -> None:
+            self.pieces.append(len(data))
+            self.come.set()
+
+    class Open:
+        waiting_bytes = 0
+
+        def stop(self, reason: str) -> None:
+            """Implement `Stream`."""
+
+    async def main() -> list[int]:
+        own, other = socket.socketpair()
+        parser = Parser()
+        connections = Connections()
+        connection = Connection(connections, parser)
+        connection.stream = Open()
+        transport, _ = await asyncio.get_running_loop().connect_accepted_socket(lambda: connection, own)
+        sent = asyncio.create_task(asyncio.to_thread(other.sendall, bytes(20 * PIECE_BYTES)))
+        while sum(parser.pieces) < 20 * PIECE_BYTES:
+            parser.come.clear()
+            connection.want()
+            async with asyncio.timeout(60.0):
+                await parser.come.wait()
+            connection.complete()
+        await sent
+        transport.abort()
+        other.close()
+        return parser.pieces
+
+    assert max(asyncio.run(main())) <= PIECE_BYTES

@@ -41,7 +41,7 @@ def test_service_responses_follow_the_published_layout(service, call, payload):
 
 @given(U32, PAYLOAD, TEXT)
 def test_assets_follow_the_published_layout(request, data, reason):
-    assert frames.asset_frame(request, data) == b"\x04" + struct.pack("<IBI", request, 0, 0) + data
+    assert frames.asset_head(request) == b"\x04" + struct.pack("<IBI", request, 0, 0)
     text = reason.encode()
     frame = frames.asset_error_frame(request, reason)
     assert frame == b"\x04" + struct.pack("<IBI", request, 1, len(text)) + text

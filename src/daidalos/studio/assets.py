@@ -53,8 +53,8 @@ class AssetResolver:
         self._is_readable = is_readable
         self._warn = warn
 
-    def read(self, uri: str) -> bytes:
-        """Return the bytes of an asset.
+    def read(self, uri: str, head: bytes = b"") -> bytearray:
+        """Return the bytes of an asset, behind a head.
 
         Raises
         ------
@@ -62,12 +62,12 @@ class AssetResolver:
             When the scheme is unknown, the file is absent, too large, or outside of what may be read.
         """
         try:
-            return self._read(uri)
+            return self._read(uri, head)
         except AssetRefusedError as error:
             self._warn(f"not served to the page: {error}")
             raise
 
-    def _read(self, uri: str) -> bytes:
+    def _read(self, uri: str, head: bytes) -> bytearray:
         if len(uri) > MAX_URI_LENGTH:
             raise AssetError(f"{uri[:80]}...: longer than {MAX_URI_LENGTH} characters")
         try:
@@ -81,7 +81,7 @@ class AssetResolver:
             for name in (path, real):
                 if name.suffix.lower() not in EXTENSIONS:
                     raise AssetError(f"{uri}: {name.suffix or 'a file without extension'} is not a mesh or texture")
-            return _read_regular(real, uri)
+            return _read_regular(real, uri, head)
         except FileNotFoundError:
             raise AssetError(f"{uri}: no such file") from None
         except (OSError, ValueError, RuntimeError) as error:  # a link to itself is a RuntimeError
@@ -115,11 +115,21 @@ class AssetResolver:
         return share.joinpath(*relative.parts), share
 
 
-def _read_regular(path: Path, uri: str) -> bytes:
-    """Return the bytes of a regular file; a pipe or a device would block or never end."""
+def _read_regular(path: Path, uri: str, head: bytes) -> bytearray:
+    """Return a head and the bytes of a regular file; a pipe or a device would block or never end.
+
+    Other threads run while the bytes are read to where they stay.
+    """
     found = path.stat()
     if not stat.S_ISREG(found.st_mode):
         raise AssetError(f"{uri}: not a file")
     if found.st_size > LIMIT_BYTES:
         raise AssetError(f"{uri}: larger than {LIMIT_BYTES >> 20} MiB")
-    return path.read_bytes()
+    data = bytearray(len(head) + found.st_size)
+    data[: len(head)] = head
+    end = len(head)
+    with path.open("rb", buffering=0) as file, memoryview(data) as view:
+        while read := file.readinto(view[end:]):
+            end += read
+    del data[end:]
+    return data

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import Future
-from typing import Any
+from typing import Any, cast
 
 from aiohttp import WSMsgType, web
 
@@ -26,7 +27,6 @@ from daidalos.studio.limits import (
     MAX_TEXT_BYTES,
     MAX_WATCHED,
     Turn,
-    Turns,
 )
 from daidalos.studio.outbox import Outbox
 from daidalos.studio.protocol import Level, ProtocolError
@@ -51,7 +51,7 @@ class Client:
     source, hub, assets
         The graph, the server's shared view of it, and the files that may be fetched.
     connections, connection, turns
-        The server's connections, the client's own, and the shares of the event loop.
+        The server's connections, the client's own, and the order of the clients' turns.
     """
 
     def __init__(
@@ -62,14 +62,14 @@ class Client:
         assets: AssetResolver | None,
         connections: Connections,
         connection: Connection,
-        turns: Turns,
+        turns: asyncio.Lock,
     ) -> None:
         self._socket = socket
         self._connections = connections
         self._connection = connection
-        self._turns = turns
         self._turn = Turn(turns)
-        self._asset_turn = asyncio.Lock()
+        self._wanted_assets: deque[tuple[int, str]] = deque()  # numbers of requests and URIs: a task each takes more
+        self._sends_assets = False
         self._drained = asyncio.Event()
         self._errors = 0
         self._closing: asyncio.Task[None] | None = None
@@ -92,21 +92,20 @@ class Client:
         self._connection.complete()
         self._connection.stream = self
         sender = asyncio.create_task(self._send())
+        self._connection.want()
         try:
             async for message in self._socket:
-                self._turn.resume()
                 self._connection.complete()
-                if message.type is WSMsgType.TEXT:
-                    async with self._turns.heavy(len(message.data)):
-                        self._turn.resume()
+                async with self._turn:
+                    if message.type is WSMsgType.TEXT:
                         await self._receive(self._receive_text, message.data)
-                elif message.type is WSMsgType.BINARY:
-                    await self._receive(self._receive_binary, message.data)
+                    elif message.type is WSMsgType.BINARY:
+                        await self._receive(self._receive_binary, message.data)
                 if self.outbox.overflowed:
                     self.stop("too many bytes of replies wait to be read")
                 if self._closing is not None:
                     break
-                await self._turn.share()
+                self._connection.want()
         finally:
             self._connection.stream = None
             sender.cancel()
@@ -173,7 +172,7 @@ class Client:
                 elif isinstance(frame, str):
                     await self._socket.send_str(frame)
                 else:
-                    await self._socket.send_bytes(frame)
+                    await self._socket.send_bytes(cast(bytes, frame))  # it takes a bytearray, too
 
     async def _receive(self, handle: Callable[[Any], Coroutine[Any, Any, None]], data: str | bytes) -> None:
         self._errors = 0
@@ -221,7 +220,11 @@ class Client:
             case protocol.UnsubscribeConnectionGraph():
                 self._graph = None
             case protocol.FetchAsset(request_id, uri):
-                self._start(self._answer_asset(request_id, uri))
+                self._check_pending()
+                self._wanted_assets.append((request_id, uri))
+                if not self._sends_assets:
+                    self._sends_assets = True
+                    self._start(self._answer_assets())
 
     async def _receive_binary(self, data: bytes) -> None:
         match frames.parse_binary(data):
@@ -310,28 +313,39 @@ class Client:
     def _refuse_call(self, request: ServiceRequest, reason: str) -> None:
         self.outbox.put_reply(protocol.ServiceCallFailure(request.service, request.call, reason).encode())
 
-    async def _answer_asset(self, request: int, uri: str) -> None:
-        async with self._asset_turn:
-            while self.outbox.reply_bytes:
-                self._drained.clear()
-                await self._drained.wait()
-            async with self._connections.room:  # of all clients, one has an asset read
-                while not self._connections.has_room():
-                    await asyncio.sleep(_ROOM_PERIOD_S)
-                self.outbox.put_reply(await self._asset_frame(request, uri))
+    async def _answer_assets(self) -> None:
+        try:
+            while self._wanted_assets:
+                while self.outbox.reply_bytes:
+                    self._drained.clear()
+                    await self._drained.wait()
+                async with self._connections.room:  # of all clients, one has an asset read
+                    while not self._connections.has_room():
+                        await asyncio.sleep(_ROOM_PERIOD_S)
+                    self.outbox.put_reply(await self._asset_frame(*self._wanted_assets.popleft()))
+        finally:
+            self._sends_assets = False
 
-    async def _asset_frame(self, request: int, uri: str) -> bytes:
+    async def _asset_frame(self, request: int, uri: str) -> bytes | bytearray:
         try:
             if self._assets is None:
                 raise AssetError("this server has no assets")
-            return frames.asset_frame(request, await asyncio.to_thread(self._assets.read, uri))
+            return await asyncio.to_thread(self._assets.read, uri, frames.asset_head(request))
         except AssetError as error:
             return frames.asset_error_frame(request, str(error))
 
-    def _start(self, request: Coroutine[Any, Any, None]) -> None:
-        if len(self._requests) >= MAX_PENDING_REQUESTS or self.outbox.overflowed:
-            request.close()
+    def _check_pending(self) -> None:
+        """Raise a `ProtocolError` where the client has as many requests under way as it may."""
+        pending = len(self._requests) + len(self._wanted_assets)
+        if pending >= MAX_PENDING_REQUESTS or self.outbox.overflowed:
             raise ProtocolError(f"more than {MAX_PENDING_REQUESTS} requests under way")
+
+    def _start(self, request: Coroutine[Any, Any, None]) -> None:
+        try:
+            self._check_pending()
+        except ProtocolError:
+            request.close()
+            raise
         task = asyncio.create_task(request)
         self._requests.add(task)
         task.add_done_callback(self._requests.discard)

@@ -13,8 +13,10 @@ from daidalos.studio.limits import (
     HANDSHAKE_S,
     MAX_CONNECTIONS,
     MAX_HELD_BYTES,
+    MAX_READ_BYTES,
     MAX_UNFINISHED_BYTES,
     MESSAGE_S,
+    PIECE_BYTES,
     STALL_S,
     SWEEP_PERIOD_S,
 )
@@ -58,10 +60,16 @@ class Connection(asyncio.Protocol):
         self._refusal: tuple[str, str] | None = None
         self._held = 0
         self._moved = self._begun
+        self._kept = bytearray()
+        self._wants = False
+        self._feeding = False
+        self._throttled = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Implement `asyncio.Protocol`."""
         self.transport = cast(asyncio.Transport, transport)
+        if hasattr(transport, "max_size"):
+            transport.max_size = MAX_READ_BYTES
         self.handler.connection_made(transport)
         if self._refusal is not None:
             self.refuse(*self._refusal)
@@ -75,13 +83,66 @@ class Connection(asyncio.Protocol):
         """Implement `asyncio.Protocol`."""
         if self._begun is None:
             self._begun = self._loop.time()
-        self.unfinished += len(data)
         self._connections.count(len(data))
+        self.unfinished += len(data)
+        if self.stream is None:
+            self._handle(data)
+        else:
+            self._kept += data
+            self.set_reading()
+            self._feed_soon()
+
+    def want(self) -> None:
+        """Hand on what was received: the client has handled its messages.
+
+        A WebSocket gets little at a time, since each of its messages that waits costs far more than its bytes.
+        """
+        self._wants = True
+        self._feed_soon()
+
+    def _feed_soon(self) -> None:
+        if self._kept and self._wants and not self._feeding:
+            self._feeding = True
+            self._loop.call_soon(self._feed)
+
+    def _feed(self) -> None:
+        self._feeding = False
+        if not self._wants or not self._kept or self.transport is None or self.transport.is_closing():
+            return
+        # A message that is not complete so far is probably a large one.
+        size = max(PIECE_BYTES, self.unfinished - len(self._kept))
+        piece = bytes(self._kept[:size])
+        del self._kept[:size]
+        self._handle(piece)
+        self.set_reading()
+        self._feed_soon()
+
+    def _handle(self, data: bytes) -> None:
         begin = time.perf_counter()
         self.handler.data_received(data)
         used = time.perf_counter() - begin
         if used > _LONG_S:
             self._connections.throttle(self, used)
+
+    def throttle(self, throttled: bool) -> None:
+        """Read no more for a while, or again."""
+        self._throttled = throttled
+        self.set_reading()
+
+    @property
+    def is_throttled(self) -> bool:
+        """Whether nothing is read for a while."""
+        return self._throttled
+
+    def set_reading(self) -> None:
+        """Read from the socket unless something speaks against it."""
+        transport = self.transport
+        if transport is None or transport.is_closing():
+            return
+        # The WebSocket itself may have stopped reading, until its messages are taken.
+        wanted = not (self._kept or self._throttled or getattr(self.handler, "_reading_paused", False))
+        if wanted != transport.is_reading():
+            transport.resume_reading() if wanted else transport.pause_reading()
 
     def eof_received(self) -> bool | None:
         """Implement `asyncio.Protocol`."""
@@ -97,9 +158,15 @@ class Connection(asyncio.Protocol):
 
     def complete(self) -> None:
         """Record that a request or message was received as a whole."""
-        self._connections.count(-self.unfinished)
-        self.unfinished = 0
+        self._connections.count(len(self._kept) - self.unfinished)
+        self.unfinished = len(self._kept)
         self._begun = None
+        self._wants = False
+
+    def drop(self) -> None:
+        """Forget what was received: the connection is closed."""
+        self._kept.clear()
+        self.complete()
 
     def age(self, now: float) -> float:
         """Return for how long a request or message has been incomplete, in seconds."""
@@ -172,7 +239,7 @@ class Connections:
 
     def remove(self, connection: Connection) -> None:
         """Count a connection no longer."""
-        connection.complete()
+        connection.drop()
         self._open.pop(connection.handler, None)
 
     def count(self, received: int) -> None:
@@ -185,25 +252,22 @@ class Connections:
         if len(large) > 1:
             oldest = max(large, key=lambda one: one.age(now))
             oldest.refuse("413 Content Too Large", "too many bytes of incomplete messages wait in the server")
-            oldest.complete()
+            oldest.drop()
 
     def throttle(self, connection: Connection, used_s: float) -> None:
         """Read no more from a connection for a while, after its data took `used_s` seconds.
 
         All connections with much data together take a third of the event loop's time.
         """
-        transport = connection.transport
-        if transport is None or transport.is_closing() or not transport.is_reading():
+        if connection.is_throttled:
             return
         self._throttled += 1
 
         def resume() -> None:
             self._throttled -= 1
-            # The WebSocket itself may have stopped reading meanwhile, until its messages are taken.
-            if not transport.is_closing() and not getattr(connection.handler, "_reading_paused", False):
-                transport.resume_reading()
+            connection.throttle(False)
 
-        transport.pause_reading()
+        connection.throttle(True)
         asyncio.get_running_loop().call_later(2 * used_s * self._throttled, resume)
 
     def has_room(self) -> bool:

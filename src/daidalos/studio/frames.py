@@ -126,9 +126,9 @@ def service_response_frame(service: int, call: int, payload: bytes, encoding: st
     return SERVICE_RESPONSE.pack(service, call, len(name)) + name + payload
 
 
-def asset_frame(request: int, data: bytes) -> bytes:
-    """Build the answer to ``fetchAsset`` that carries the file."""
-    return ASSET.pack(request, 0, 0) + data
+def asset_head(request: int) -> bytes:
+    """Return the head of the answer to ``fetchAsset`` that carries the file: the file's bytes follow."""
+    return ASSET.pack(request, 0, 0)
 
 
 def asset_error_frame(request: int, reason: str) -> bytes:

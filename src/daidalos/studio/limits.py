@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import time
-from collections.abc import AsyncIterator
 
 MAX_CONNECTIONS = 256
 """Connections that are open at once; of these that have not sent a request, the oldest makes room for a new one."""
@@ -21,6 +19,10 @@ MAX_UNFINISHED_BYTES = 48 << 20
 """Bytes of incomplete messages of several clients; beyond, the one that began first is closed."""
 MAX_HELD_BYTES = 48 << 20
 """Bytes that wait to be sent, of all clients; beyond, the ones that read nothing for longest are closed."""
+MAX_READ_BYTES = 64 << 10
+"""Bytes that are read from a connection at once."""
+PIECE_BYTES = 8 << 10
+"""Bytes of them that become messages before the client handles these."""
 MAX_TEXT_BYTES = 4 << 20
 """Bytes of one text frame."""
 MAX_ENTRIES = 2048
@@ -37,53 +39,47 @@ MAX_ERROR_LENGTH = 500
 """Characters of an error's text, which may repeat what a client sent."""
 MAX_REASON_BYTES = 120
 """Bytes of the reason for which a connection is closed (RFC 6455, 5.5)."""
-HEAVY_BYTES = 2 << 10
-"""Bytes of a text frame that takes long to read."""
 SLICE_S = 0.001
-"""Time that one client's requests take before other clients have their turn."""
-
-
-class Turns:
-    """Turns of the clients in the server's event loop, so that busy ones take at most half of its time."""
-
-    def __init__(self) -> None:
-        self._busy = 0
-        self._heavy = asyncio.Lock()
-
-    @contextlib.asynccontextmanager
-    async def heavy(self, size: int) -> AsyncIterator[None]:
-        """Handle a frame of `size` bytes: large ones one after the other, with as much time for others between."""
-        if size < HEAVY_BYTES:
-            yield
-            return
-        async with self._heavy:
-            begin = time.perf_counter()
-            yield
-            await asyncio.sleep(time.perf_counter() - begin)
-
-    async def give(self, used_s: float) -> None:
-        """Wait until others had their turn, after `used_s` seconds of work."""
-        self._busy += 1
-        try:
-            await asyncio.sleep(2 * used_s * (self._busy - 1))
-        finally:
-            self._busy -= 1
+"""Time that a client's requests take before everything else has its turn."""
+SLICE_REQUESTS = 32
+"""Requests of a client, or entries of one, after which everything else has its turn."""
 
 
 class Turn:
-    """One client's share of the event loop."""
+    """One client's turn in the server's event loop: clients handle their requests one after the other.
 
-    def __init__(self, turns: Turns) -> None:
-        self._turns = turns
+    However many of them have requests, the event loop does one request, or a part of it, between two looks at
+    everything else, and a client that computes leaves as much time to everything else.
+
+    Parameters
+    ----------
+    order
+        Lock of all clients, whose waiters are served in the order in which they came.
+    """
+
+    def __init__(self, order: asyncio.Lock) -> None:
+        self._order = order
+        self._begin = 0.0
+        self._used_s = 0.0
+        self._requests = 0
+
+    async def __aenter__(self) -> None:
+        await self._order.acquire()
         self._begin = time.perf_counter()
 
-    def resume(self) -> None:
-        """Count from now: the client had nothing to do."""
-        self._begin = time.perf_counter()
+    async def __aexit__(self, *error: object) -> None:
+        try:
+            await self.share()
+        finally:
+            self._order.release()
 
     async def share(self) -> None:
-        """Hand on to others where this one has lasted `SLICE_S`."""
-        used = time.perf_counter() - self._begin
-        if used >= SLICE_S:
-            await self._turns.give(used)
+        """Rest after `SLICE_S` of work or `SLICE_REQUESTS`, for as long as the work took."""
+        now = time.perf_counter()
+        self._used_s += now - self._begin
+        self._requests += 1
+        self._begin = now
+        if self._used_s >= SLICE_S or self._requests >= SLICE_REQUESTS:
+            used, self._used_s, self._requests = self._used_s, 0.0, 0
+            await asyncio.sleep(used)
             self._begin = time.perf_counter()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import ipaddress
 import os
 import socket
@@ -15,7 +16,7 @@ _TABLES = {4: Path("/proc/net/tcp"), 6: Path("/proc/net/tcp6")}
 _ESTABLISHED = "01"
 _ROOT = 0
 # Of linux/netlink.h, linux/sock_diag.h and linux/inet_diag.h.
-_NETLINK_SOCK_DIAG, _SOCK_DIAG_BY_FAMILY, _NLM_F_REQUEST = 4, 20, 1
+_NETLINK_SOCK_DIAG, _SOCK_DIAG_BY_FAMILY, _NLM_F_REQUEST, _NLMSG_ERROR = 4, 20, 1, 2
 _HEADER = struct.Struct("=IHHII")
 _REQUEST = struct.Struct("=BBHI")
 _SOCKET = struct.Struct(">HH16s16s")
@@ -41,8 +42,9 @@ def is_of_another_user(peer: Any, own: Any) -> bool:
         address = ipaddress.ip_address(peer[0])
         if not address.is_loopback:
             return False
-        user = _ask_kernel(address.version, peer, own)
-        users = set(_users(_lines(address.version), _entry(peer), _entry(own))) if user is None else {user}
+        users = _ask_kernel(address.version, peer, own)
+        if users is None:
+            users = set(_users(_lines(address.version), _entry(peer), _entry(own)))
     except (OSError, ValueError):
         return False
     return not users & {os.getuid(), _ROOT}
@@ -52,8 +54,8 @@ def _lines(version: int) -> list[str]:
     return _TABLES[version].read_text(encoding="ascii").splitlines()[1:]
 
 
-def _ask_kernel(version: int, local: Any, remote: Any) -> int | None:
-    """Return the user of one connection's local end; None where the kernel has no answer.
+def _ask_kernel(version: int, local: Any, remote: Any) -> set[int] | None:
+    """Return the user of one connection's local end, nobody of one that was closed; None where the kernel is silent.
 
     Reading the list of all connections instead takes milliseconds where there are thousands of them.
     """
@@ -68,10 +70,14 @@ def _ask_kernel(version: int, local: Any, remote: Any) -> int | None:
             answer = kernel.recv(4096)
     except OSError:
         return None
-    found = len(answer) >= _HEADER.size + _USER_OFFSET + 4 and _HEADER.unpack_from(answer)[1] == _SOCK_DIAG_BY_FAMILY
-    if not found or answer[_HEADER.size + 1] != int(_ESTABLISHED):
+    kind = _HEADER.unpack_from(answer)[1] if len(answer) >= _HEADER.size else 0
+    if kind == _NLMSG_ERROR and len(answer) >= _HEADER.size + 4:
+        return set() if struct.unpack_from("=i", answer, _HEADER.size)[0] == -errno.ENOENT else None
+    if kind != _SOCK_DIAG_BY_FAMILY or len(answer) < _HEADER.size + _USER_OFFSET + 4:
         return None
-    return int(struct.unpack_from("=I", answer, _HEADER.size + _USER_OFFSET)[0])
+    if answer[_HEADER.size + 1] != int(_ESTABLISHED):
+        return set()
+    return {int(struct.unpack_from("=I", answer, _HEADER.size + _USER_OFFSET)[0])}
 
 
 def _users(lines: list[str], local: str, remote: str) -> Iterator[int]:

@@ -38,7 +38,7 @@ class Outbox:
     def __init__(self, wake: Callable[[], None]) -> None:
         self._wake = wake
         self._lock = threading.Lock()
-        self._replies: deque[str | bytes] = deque()
+        self._replies: deque[str | bytes | bytearray] = deque()
         self._reply_bytes = 0
         self._queues: dict[int, _Queue] = {}
         self._turns: deque[_Queue] = deque()
@@ -92,7 +92,7 @@ class Outbox:
         if woken:
             self._wake()
 
-    def put_reply(self, frame: str | bytes) -> None:
+    def put_reply(self, frame: str | bytes | bytearray) -> None:
         """Add a reply or an announcement; replies go before messages and none is dropped."""
         with self._lock:
             self._replies.append(frame)
@@ -109,7 +109,7 @@ class Outbox:
         if woken:
             self._wake()
 
-    def take(self) -> str | bytes | None:
+    def take(self) -> str | bytes | bytearray | None:
         """Remove and return the next frame; None when nothing waits, and the next arrival will wake."""
         with self._lock:
             if self._replies:

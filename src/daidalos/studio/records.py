@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from types import NoneType
@@ -50,20 +50,34 @@ def from_json(record: type[T], value: Mapping[str, Any]) -> T:
         When a required key is missing, or a value has another type.
     """
     arguments = {}
-    for name, key, hint, is_needed in _layout(record):  # type: ignore[arg-type]
+    for name, key, read, expected, is_needed in _layout(record):  # type: ignore[arg-type]
         found = value.get(key)
         if found is not None:
-            arguments[name] = _read(hint, found, key)
+            try:
+                arguments[name] = read(found)
+            except _UnfitError:
+                raise _wrong(key, expected) from None
         elif is_needed:
-            raise RecordError(f'expected "{key}" to be {_expected(hint)}')
+            raise _wrong(key, expected)
     return record(**arguments)
 
 
+class _UnfitError(Exception):
+    """A value that is not of its field's type."""
+
+
+def _wrong(key: str, expected: str) -> RecordError:
+    return RecordError(f'expected "{key}" to be {expected}')
+
+
 @cache
-def _layout(record: type) -> list[tuple[str, str, Any, bool]]:
-    """Return the name, key and type of a record's fields, and whether they are required."""
+def _layout(record: type) -> list[tuple[str, str, Callable[[Any], Any], str, bool]]:
+    """Return the name and key of a record's fields, what reads what describes them, whether they are required."""
     hints = field_types(record)
-    return [(field.name, key_of(field.name), hints[field.name], field.default is MISSING) for field in fields(record)]
+    return [
+        (one.name, key_of(one.name), _reader(hints[one.name]), _expected(hints[one.name]), one.default is MISSING)
+        for one in fields(record)
+    ]
 
 
 @cache
@@ -83,34 +97,47 @@ def _without_none(hint: Any) -> Any:
     return one
 
 
-def _read(hint: Any, value: Any, key: str) -> Any:
+def _reader(hint: Any) -> Callable[[Any], Any]:
+    """Return a function that reads the value of a field's type; it raises `_UnfitError`."""
     if get_origin(hint) is tuple:
-        element = get_args(hint)[0]
-        if not isinstance(value, list) or not all(_fits(element, item) for item in value):
-            raise _wrong(hint, key)
-        return tuple(from_json(element, item) if is_record(element) else item for item in value)
-    if not _fits(hint, value):
-        raise _wrong(hint, key)
-    return from_json(hint, value) if is_record(hint) else value
+        return _list_reader(get_args(hint)[0])
+    if hint not in _KINDS and not is_record(hint):
+        return lambda value: value
+    fits = _check(hint)
+
+    def read(value: Any) -> Any:
+        if not fits(value):
+            raise _UnfitError
+        return from_json(hint, value) if is_record(hint) else value
+
+    return read
 
 
-def _wrong(hint: Any, key: str) -> RecordError:
-    return RecordError(f'expected "{key}" to be {_expected(hint)}')
+def _list_reader(element: Any) -> Callable[[Any], tuple[Any, ...]]:
+    fits = _check(element)
+    is_plain = not is_record(element)
+
+    def read(value: Any) -> tuple[Any, ...]:
+        if not isinstance(value, list) or not all(map(fits, value)):
+            raise _UnfitError
+        return tuple(value) if is_plain else tuple(from_json(element, item) for item in value)
+
+    return read
+
+
+def _check(hint: Any) -> Callable[[Any], bool]:
+    """Return a function that returns whether a value is of a type."""
+    if hint == Uint32:
+        return lambda value: isinstance(value, int) and 0 <= value < 1 << 32
+    if not is_record(hint) and hint not in _KINDS:
+        return lambda value: True
+    kind = dict if is_record(hint) else _KINDS[hint][0]
+    return lambda value: isinstance(value, kind)
 
 
 def is_record(hint: Any) -> TypeGuard[type[Any]]:
     """Return whether a field's type is a record."""
     return isinstance(hint, type) and is_dataclass(hint)
-
-
-def _fits(hint: Any, value: Any) -> bool:
-    if is_record(hint):
-        return isinstance(value, dict)
-    if hint not in _KINDS:
-        return True
-    if hint == Uint32:
-        return isinstance(value, int) and 0 <= value < 1 << 32
-    return isinstance(value, _KINDS[hint][0])
 
 
 def _expected(hint: Any) -> str:

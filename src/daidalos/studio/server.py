@@ -34,7 +34,7 @@ from daidalos.studio.connections import Connections
 from daidalos.studio.files import STATIC
 from daidalos.studio.hub import Changes, Hub
 from daidalos.studio.layouts import MAX_FILE_BYTES, read_layout, write_layout
-from daidalos.studio.limits import HANDSHAKE_S, Turns
+from daidalos.studio.limits import HANDSHAKE_S
 from daidalos.studio.local_users import is_of_another_user
 from daidalos.studio.pages import (
     ARRANGEMENT_KEY,
@@ -45,7 +45,7 @@ from daidalos.studio.pages import (
     extensions_of,
     page,
 )
-from daidalos.studio.ports import ANY_ADDRESS, BACKLOG, is_loopback, open_port, outward_address
+from daidalos.studio.ports import ACCEPTED_AT_ONCE, ANY_ADDRESS, BACKLOG, is_loopback, open_port, outward_address
 from daidalos.studio.protocol import Level
 from daidalos.studio.source import GraphSource, Parameter, Topic
 
@@ -128,7 +128,7 @@ class StudioServer:
         self._session = uuid.uuid4().hex
         self._hub = Hub(source)
         self._connections = Connections()
-        self._turns = Turns()
+        self._turns = asyncio.Lock()
         self._clients: set[Client] = set()
         self._sockets: set[web.WebSocketResponse] = set()
         self._refresh_pending = False
@@ -273,8 +273,9 @@ class StudioServer:
             timeout = None if self._tls is None else HANDSHAKE_S
             for opened in sockets:
                 listener = await self._loop.create_server(
-                    make_protocol, sock=opened, backlog=BACKLOG, ssl=self._tls, ssl_handshake_timeout=timeout
+                    make_protocol, sock=opened, backlog=ACCEPTED_AT_ONCE, ssl=self._tls, ssl_handshake_timeout=timeout
                 )
+                opened.listen(BACKLOG)  # those that are not accepted at once wait in the system
                 listeners.append(listener)
             self._time = self._source.time()
             observing = self._source.attach(self)

@@ -3,8 +3,8 @@
 A small shell waits at a pipe that only this process holds open. When this process ends, in whatever way, the pipe
 closes, and the shell stops the processes that are still watched: by SIGINT, then SIGTERM, then SIGKILL. It works for
 programs of any kind and on every POSIX system. (The signal at the parent's death that Linux offers is sent when the
-starting thread ends, and reaches neither what a program started itself nor a program that changed its user.) Windows
-has neither; there, processes that are started outlive a parent that is killed.
+starting thread ends, and reaches neither what a program started itself nor a program that changed its user.) On
+Windows a job object ends the processes at once, as there is no SIGINT for a process without a console of its own.
 """
 
 from __future__ import annotations
@@ -13,6 +13,10 @@ import os
 import subprocess
 import threading
 from contextlib import suppress
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from daidalos.workspaces.jobs import JobGuard
 
 _TERM_TIMEOUT_S = 5
 """Seconds after SIGINT, and after SIGTERM, before the next harder signal, as in a launch."""
@@ -57,8 +61,6 @@ class OrphanGuard:
         self._send("-", target)
 
     def _send(self, change: str, target: int) -> None:
-        if os.name != "posix":
-            return
         with self._lock, suppress(OSError):  # without a shell, nothing watches
             pipe = self._running().stdin
             assert pipe is not None
@@ -80,5 +82,13 @@ class OrphanGuard:
         return self._shell
 
 
-guard = OrphanGuard()
+def _guard() -> OrphanGuard | JobGuard:
+    if os.name == "posix":
+        return OrphanGuard()
+    from daidalos.workspaces.jobs import JobGuard
+
+    return JobGuard()
+
+
+guard = _guard()
 """The guard of this process."""
