@@ -93,9 +93,10 @@ def test_particles_are_fewer_when_the_robot_is_sure():
 
 
 def test_while_the_robot_stands_scans_are_not_used_unless_asked_for():
-    filter_ = Amcl(AmclConfig(), MAP)
+    filter_ = Amcl(AmclConfig(updates_after_initial_pose=2), MAP)
     filter_.initialize(START, NEAR)
     scan = wandering_from_start().robot.scan()
+    assert filter_.update(np.zeros(3), scan).updated
     assert filter_.update(np.zeros(3), scan).updated
     assert not filter_.update(np.array([0.1, 0.0, 0.1]), scan).updated
     filter_.request_nomotion_update()
@@ -105,7 +106,7 @@ def test_while_the_robot_stands_scans_are_not_used_unless_asked_for():
 
 
 def test_between_scans_the_pose_follows_odometry():
-    filter_ = Amcl(AmclConfig(), MAP)
+    filter_ = Amcl(AmclConfig(updates_after_initial_pose=1), MAP)
     filter_.initialize(START, NEAR)
     scan = wandering_from_start().robot.scan()
     at_rest = filter_.update(np.zeros(3), scan)
@@ -177,3 +178,48 @@ def test_unknown_models_are_named_with_the_known():
 def test_an_initial_pose_must_be_finite():
     with pytest.raises(LocalizationError, match="finite"):
         Amcl(AmclConfig(), MAP).initialize(np.array([np.nan, 0.0, 0.0]), NEAR)
+
+
+def test_a_standing_robot_is_found_from_a_guess_aside():
+    filter_ = Amcl(AmclConfig(), MAP, seed=3)
+    scan = wandering_from_start(3).robot.scan()
+    filter_.initialize(START + np.array([0.5, -0.4, 0.3]), np.diag([0.25, 0.25, 0.07]))
+    for _ in range(10):
+        pose = filter_.update(np.zeros(3), scan).pose
+    assert math.hypot(*(pose - START)[:2]) < 0.05
+    assert abs(float(wrap(pose[2] - START[2]))) < 0.05
+
+
+@pytest.mark.parametrize("covariance", [np.diag([-1.0, 0.1, 0.1]), np.array([[0.1, 5, 0], [5, 0.1, 0], [0, 0, 0.1]])])
+def test_a_covariance_that_is_none_is_replaced_by_the_nearest(covariance):
+    filter_ = Amcl(AmclConfig(), MAP, seed=3)
+    filter_.initialize(START, covariance)
+    estimate = filter_.update(np.zeros(3), wandering_from_start(3).robot.scan())
+    assert np.isfinite(estimate.particles).all()
+
+
+def test_parameters_change_while_it_runs():
+    filter_ = Amcl(AmclConfig(), MAP, seed=4)
+    filter_.initialize(START, NEAR)
+    wanderer = wandering_from_start(4)
+    errors(filter_, wanderer, 20)
+    filter_.reconfigure(AmclConfig(laser_model_type="likelihood_field_prob", max_particles=700, refine_pose=False))
+    assert errors(filter_, wanderer, 60)[20:, 0].max() < 0.3
+    assert filter_.update(*wanderer.step()[:2]).weights.size <= 700
+
+
+def test_a_map_of_another_resolution_continues():
+    filter_ = Amcl(AmclConfig(), MAP, seed=5)
+    filter_.initialize(START, NEAR)
+    wanderer = wandering_from_start(5)
+    errors(filter_, wanderer, 20)
+    coarse = MAP.data[: MAP.data.shape[0] // 2 * 2, : MAP.data.shape[1] // 2 * 2]
+    coarse = np.maximum.reduce([coarse[i::2, j::2] for i in (0, 1) for j in (0, 1)])
+    filter_.set_map(type(MAP)(coarse, 2 * MAP.resolution, MAP.origin))
+    assert errors(filter_, wanderer, 60)[20:, 0].max() < 0.3
+
+
+def test_the_seed_is_a_parameter():
+    drawn = [Amcl(AmclConfig(random_seed=seed), MAP)._particles for seed in (1, 1, 2)]
+    assert np.array_equal(drawn[0], drawn[1])
+    assert not np.array_equal(drawn[0], drawn[2])

@@ -14,12 +14,14 @@ from daidalos.localization.motion_models.differential import DifferentialMotionM
 from daidalos.localization.motion_models.motion_model import MotionModel
 from daidalos.localization.motion_models.omnidirectional import OmniMotionModel
 from daidalos.localization.particles import (
-    bins_of,
+    count_bins,
     heaviest_cluster,
     kld_bound,
     low_variance_indices,
     mean_and_covariance,
+    second_moments,
 )
+from daidalos.localization.refinement import refined
 from daidalos.localization.sensor_models.beam import BeamModel
 from daidalos.localization.sensor_models.likelihood_field import (
     LikelihoodFieldModel,
@@ -29,12 +31,8 @@ from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 
-MOTION_MODELS: dict[str, type[DifferentialMotionModel] | type[OmniMotionModel]] = {
-    "nav2_amcl::DifferentialMotionModel": DifferentialMotionModel,
-    "differential": DifferentialMotionModel,
-    "nav2_amcl::OmniMotionModel": OmniMotionModel,
-    "omnidirectional": OmniMotionModel,
-}
+_DIFFERENTIAL = ("nav2_amcl::DifferentialMotionModel", "differential", "diff-corrected")
+_OMNIDIRECTIONAL = ("nav2_amcl::OmniMotionModel", "omnidirectional", "omni-corrected")
 SENSOR_MODELS: dict[str, type[LikelihoodFieldModel] | type[LikelihoodFieldProbModel] | type[BeamModel]] = {
     "likelihood_field": LikelihoodFieldModel,
     "likelihood_field_prob": LikelihoodFieldProbModel,
@@ -42,6 +40,10 @@ SENSOR_MODELS: dict[str, type[LikelihoodFieldModel] | type[LikelihoodFieldProbMo
 }
 DEFAULT_COVARIANCE = np.diag([0.25, 0.25, (math.pi / 12.0) ** 2])
 """Spread of the first particles where no initial pose is given."""
+
+
+ROUGHENING = np.array([0.02, 0.02, 0.01])
+"""Noise [m, m, rad] of the particles while scans are used although the robot stands, so that they stay distinct."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class Estimate:
     pose : ndarray, shape (3,)
         Pose (x, y, yaw) of the base in the map.
     covariance : ndarray, shape (3, 3)
-        Of that pose, at the last scan that was used.
+        Mean squares of all particles' distances from that pose, at the last scan that was used.
     particles : ndarray, shape (n, 3)
         All poses that are thought possible, at the last scan that was used.
     weights : ndarray, shape (n,)
@@ -85,28 +87,30 @@ class Amcl:
         Parameters.
     grid : OccupancyGrid
         The map.
-    seed : int
-        Of the random numbers.
+    seed : int or None
+        Of the random numbers; the parameter ``random_seed`` where None.
 
     Raises
     ------
     LocalizationError
-        There is no such model, or the map cannot be used.
+        The map cannot be used.
     """
 
-    def __init__(self, config: AmclConfig, grid: OccupancyGrid, seed: int = 0) -> None:
-        self.config = config
+    def __init__(self, config: AmclConfig, grid: OccupancyGrid, seed: int | None = None) -> None:
+        if seed is None and config.random_seed >= 0:
+            seed = config.random_seed
         self._generator = np.random.default_rng(seed)
-        motion = MOTION_MODELS[config.robot_model_type]
-        sensor = SENSOR_MODELS[config.laser_model_type]
-        self._motion: MotionModel = motion(config)
-        self._sensor: SensorModel = sensor(config)
-        self._world = LikelihoodMap(grid, config.laser_likelihood_max_dist)
+        self._grid = grid
+        self._use(config)
         self._particles: Array = np.zeros((1, 3))
         self._weights: Array = np.ones(1)
         self._odom: Array | None = None
         self._map_to_odom: Array = np.zeros(3)
         self.initialize(np.zeros(3), DEFAULT_COVARIANCE)
+
+    def reconfigure(self, config: AmclConfig) -> None:
+        """Continue with other parameters, and with the particles that there are."""
+        self._use(config)
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Continue in another map of the same frame.
@@ -116,7 +120,12 @@ class Amcl:
         LocalizationError
             The map cannot be used; the last one stays.
         """
-        self._world = LikelihoodMap(grid, self.config.laser_likelihood_max_dist)
+        self._world = _likelihood_map(self.config, grid)
+        self._grid = grid
+
+    def contains(self, position: Array) -> bool:
+        """Return whether a position (x, y) lies on the map."""
+        return self._world.contains(position)
 
     def initialize(self, pose: Array, covariance: Array) -> None:
         """Draw the particles around a pose.
@@ -126,7 +135,7 @@ class Amcl:
         pose : ndarray, shape (3,)
             Pose (x, y, yaw) in the map.
         covariance : ndarray, shape (3, 3)
-            How sure that is.
+            How sure that is; of a matrix that is none, the nearest that is one is taken.
 
         Raises
         ------
@@ -136,9 +145,12 @@ class Amcl:
         if not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
             raise LocalizationError("an initial pose and its covariance must be finite")
         count = self.config.max_particles
-        drawn = self._generator.multivariate_normal(pose, covariance, count, method="eigh")
+        variances, axes = np.linalg.eigh(0.5 * (covariance + covariance.T))
+        scaled = axes * np.sqrt(np.maximum(variances, 0.0))
+        drawn = pose + self._generator.standard_normal((count, 3)) @ scaled.T
         drawn[:, 2] = wrap(drawn[:, 2])
         self._begin(drawn)
+        self._settling = self.config.updates_after_initial_pose
 
     def global_localization(self) -> None:
         """Draw the particles anywhere in the free space of the map."""
@@ -163,23 +175,34 @@ class Amcl:
         Estimate
             Pose in the map; from odometry alone while the robot has hardly moved.
         """
-        if self._odom is not None and not self._forced and not self._moved(odom_pose):
+        beams = Beams.of_scan(scan, self.config)
+        moved = self._odom is not None and self._moved(odom_pose)
+        due = self._odom is None or moved or self._forced or self._settling > 0
+        if not due or not beams.ranges.size:
             return self._estimate(odom_pose, updated=False)
         if self._odom is not None:
             self._particles = self._motion.sample(self._particles, self._odom, odom_pose, self._generator)
+            if self._settling and not moved:
+                self._particles += ROUGHENING * self._generator.standard_normal(self._particles.shape)
         self._odom = odom_pose.copy()
         self._forced = False
-        beams = Beams.of_scan(scan, self.config)
-        if beams.ranges.size:
-            self._weigh(beams)
-        self._look_closely(odom_pose)
+        self._settling = max(self._settling - 1, 0)
+        self._weigh(beams)
+        self._look_closely(odom_pose, beams)
         return self._estimate(odom_pose, updated=True)
+
+    def _use(self, config: AmclConfig) -> None:
+        self._world = _likelihood_map(config, self._grid)
+        self._motion: MotionModel = _motion_model(config)
+        self._sensor: SensorModel = SENSOR_MODELS[config.laser_model_type](config)
+        self.config = config
 
     def _begin(self, particles: Array) -> None:
         self._particles = particles
         self._weights = np.full(particles.shape[0], 1.0 / particles.shape[0])
         self._odom = None
         self._forced = False
+        self._settling = 0
         self._scans = 0
         self._slow = self._fast = 0.0
         self._mean, self._covariance = mean_and_covariance(particles, self._weights)
@@ -216,11 +239,11 @@ class Amcl:
         c = self.config
         lost = self._share_of_random()
         most = low_variance_indices(self._weights, c.max_particles, self._generator.random())
-        covered = np.unique(bins_of(self._particles[np.unique(most)])).size + round(lost * c.max_particles)
+        covered = count_bins(self._particles, most) + round(lost * c.max_particles)
         count = min(max(kld_bound(covered, c.pf_err, c.pf_z), c.min_particles), c.max_particles)
         chosen = low_variance_indices(self._weights, count, self._generator.random())
         drawn = self._particles[chosen]
-        strangers = self._generator.random(count) < lost
+        strangers = self._generator.random(count) < lost if lost > 0.0 else np.zeros(0, np.bool_)
         if strangers.any():
             drawn[strangers] = self._world.draw_poses(int(strangers.sum()), self._generator)
         self._particles = drawn
@@ -232,10 +255,13 @@ class Amcl:
             return 0.0
         return max(0.0, 1.0 - self._fast / self._slow)
 
-    def _look_closely(self, odom_pose: Array) -> None:
-        """Set the pose estimate to the heaviest cluster."""
+    def _look_closely(self, odom_pose: Array, beams: Beams) -> None:
+        """Set the pose estimate to the heaviest cluster, or to the likeliest pose within it."""
         members = heaviest_cluster(self._particles, self._weights)
-        self._mean, self._covariance = mean_and_covariance(self._particles[members], self._weights[members])
+        self._mean, spread = mean_and_covariance(self._particles[members], self._weights[members])
+        if self.config.refine_pose:
+            self._mean = refined(self._mean, spread, beams, self._world, self.config)
+        self._covariance = second_moments(self._particles, self._weights, self._mean)
         self._map_to_odom = compose(self._mean, inverse(odom_pose))
 
     def _estimate(self, odom_pose: Array, *, updated: bool) -> Estimate:
@@ -247,3 +273,15 @@ class Amcl:
             self._map_to_odom.copy(),
             updated,
         )
+
+
+def _likelihood_map(config: AmclConfig, grid: OccupancyGrid) -> LikelihoodMap:
+    return LikelihoodMap(grid, config.laser_likelihood_max_dist, downsampled=config.freespace_downsampling)
+
+
+def _motion_model(config: AmclConfig) -> MotionModel:
+    """Return the model that ``robot_model_type`` names; ROS 1's two without correction are the last ones."""
+    name = config.robot_model_type
+    if name in _DIFFERENTIAL or name == "diff":
+        return DifferentialMotionModel(config, corrected=name in _DIFFERENTIAL)
+    return OmniMotionModel(config, corrected=name in _OMNIDIRECTIONAL)

@@ -4,7 +4,11 @@ from dataclasses import dataclass
 
 from daidalos.common.parameters import ParameterError, Parameters, parameter
 
-MOTION_MODELS = ("nav2_amcl::DifferentialMotionModel", "nav2_amcl::OmniMotionModel", "differential", "omnidirectional")
+MOTION_MODELS = (
+    "nav2_amcl::DifferentialMotionModel", "nav2_amcl::OmniMotionModel", "differential", "omnidirectional",
+    "diff-corrected", "omni-corrected", "diff", "omni",
+)  # fmt: skip
+"""Nav2's names, those of its first releases, and ROS 1's; the last two are ROS 1's models with larger noise."""
 LASER_MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
 
 
@@ -13,7 +17,8 @@ class AmclConfig(Parameters):
     """Parameters of AMCL as Nav2 names them.
 
     Defaults are Nav2's, with one exception: recovery is on (`recovery_alpha_slow`, `recovery_alpha_fast`), as
-    it is in ROS 1's examples, since a robot that was carried elsewhere stays lost without it.
+    it is in ROS 1's examples, since a robot that was carried elsewhere stays lost without it. The last three are
+    ours.
 
     The mixture of the sensor model is that of Thrun, Burgard and Fox 2005, section 6.3; recovery is augmented MCL,
     table 8.3; KLD sampling is that of Fox 2003.
@@ -40,6 +45,18 @@ class AmclConfig(Parameters):
     laser_likelihood_max_dist: float = parameter(
         2.0, "Distance from obstacles beyond which the likelihood field is flat.", unit="m", above=0.0
     )
+    do_beamskip: bool = parameter(
+        False, "Whether likelihood_field_prob leaves out beams that most particles cannot explain."
+    )
+    beam_skip_distance: float = parameter(
+        0.5, "Distance from an obstacle up to which the end of a beam is explained.", unit="m", minimum=0.0
+    )
+    beam_skip_threshold: float = parameter(
+        0.3, "Ratio of particles that have to explain a beam.", minimum=0.0, maximum=1.0
+    )
+    beam_skip_error_threshold: float = parameter(
+        0.9, "Ratio of beams left out from which on none is left out.", minimum=0.0, maximum=1.0
+    )
     min_particles: int = parameter(500, "Least number of particles.", minimum=1)
     max_particles: int = parameter(2000, "Largest number of particles.", minimum=1)
     pf_err: float = parameter(
@@ -54,6 +71,16 @@ class AmclConfig(Parameters):
     )
     recovery_alpha_fast: float = parameter(
         0.1, "Decay of the fast average of the weights; 0 turns recovery off.", minimum=0.0, maximum=1.0
+    )
+    freespace_downsampling: bool = parameter(
+        False, "Whether random particles are drawn in every second row and column of cells only."
+    )
+    random_seed: int = parameter(-1, "Seed of the random numbers; negative for another one each time.")
+    refine_pose: bool = parameter(
+        True, "Whether the pose is the likeliest one near the mean of the particles rather than the mean."
+    )
+    updates_after_initial_pose: int = parameter(
+        5, "Scans that are used after an initial pose even if the robot stands.", minimum=1
     )
 
     def check(self) -> None:

@@ -58,3 +58,16 @@ def test_sideways_noise_of_an_omnidirectional_robot():
     x, y, _ = spread(OmniMotionModel, [0.0, 2.0, 0.0], alpha5=0.01)
     assert x == pytest.approx(0.2, rel=0.03)
     assert y == pytest.approx(0.0, abs=1e-9)
+
+
+def test_ros_1s_models_without_correction_take_variances_for_deviations():
+    straight = {"before": np.zeros(3), "after": np.array([2.0, 0.0, 0.0])}
+    for kind in (DifferentialMotionModel, OmniMotionModel):
+        config = AmclConfig(**{f"alpha{k}": 0.0 for k in range(1, 6)} | {"alpha3": 0.1})
+        spreads = [
+            kind(config, corrected=corrected)
+            .sample(np.zeros((40_000, 3)), **straight, generator=np.random.default_rng(0))[:, 0]
+            .std()
+            for corrected in (True, False)
+        ]
+        assert spreads == pytest.approx([math.sqrt(0.1) * 2.0, 0.1 * 4.0], rel=0.03)

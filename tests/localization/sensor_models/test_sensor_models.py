@@ -7,11 +7,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from daidalos.common.pose2 import compose
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.errors import LocalizationError
 from daidalos.localization.likelihood_map import LikelihoodMap
 from daidalos.localization.sensor_models.beam import BeamModel, cast_ray
-from daidalos.localization.sensor_models.likelihood_field import LikelihoodFieldModel, LikelihoodFieldProbModel
+from daidalos.localization.sensor_models.likelihood_field import (
+    LikelihoodFieldModel,
+    LikelihoodFieldProbModel,
+    count_agreeing,
+)
 from daidalos.localization.sensor_models.sensor_model import Beams
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
@@ -22,6 +27,7 @@ from ..wandering import map_of
 WORLD = arena()
 MAP = LikelihoodMap(map_of(WORLD, 8.0, 6.0), 2.0)
 CONFIG = AmclConfig()
+MAP_CELLS = np.array([[0, 100]], dtype=np.int8)
 
 
 def beams_at(pose, count=40):
@@ -85,12 +91,12 @@ def test_rays_end_at_the_first_occupied_cell(x, y, angle):
     # The corner of a cell that the ray is in for less than half of a cell may be stepped over.
     through = np.convolve(hit, np.ones(30), "valid") == 30
     certain = along[np.argmax(through)]
-    length = cast_ray(MAP.distance, MAP.resolution, MAP.origin, x, y, angle, 12.0)
+    length = cast_ray(MAP.distance, MAP.resolution, *MAP.to_cells(np.array([[x, y, angle]]))[0], 12.0)
     assert first - 0.002 <= length <= certain + 0.03
 
 
 def test_a_ray_that_leaves_the_map_is_as_long_as_can_be():
-    assert cast_ray(MAP.distance, 0.05, MAP.origin, -0.19, -0.19, -2.0, 9.0) == 9.0
+    assert cast_ray(MAP.distance, 0.05, 0.2, 0.2, -2.0, 9.0) == 9.0
 
 
 def test_beams_are_spread_over_the_scan_and_useless_ones_left_out():
@@ -120,9 +126,61 @@ def test_maps_without_contrast_are_refused(bad, words):
         LikelihoodMap(bad, 2.0)
 
 
-def test_turned_maps_are_refused():
-    with pytest.raises(LocalizationError, match="turned"):
-        LikelihoodMap(grid(0, 0.5), 2.0)
+@pytest.mark.parametrize("model", [LikelihoodFieldModel, LikelihoodFieldProbModel, BeamModel])
+def test_a_turned_map_weighs_turned_poses_alike(model):
+    straight = map_of(WORLD, 8.0, 6.0)
+    turn = np.array([3.0, -1.0, 0.7])
+    turned = OccupancyGrid(straight.data, straight.resolution, tuple(compose(turn, np.array(straight.origin))))
+    poses = MAP.draw_poses(50, np.random.default_rng(1))
+    beams = beams_at((1.5, 1.5, 0.4))
+    expected = model(CONFIG).likelihoods(poses, beams, MAP)
+    found = model(CONFIG).likelihoods(compose(turn, poses), beams, LikelihoodMap(turned, 2.0))
+    # Rounding may put single beams into the next cell.
+    assert np.median(np.abs(found / expected - 1.0)) < 0.01
+    free = LikelihoodMap(turned, 2.0)
+    assert all(free.contains(pose) for pose in free.draw_poses(50, np.random.default_rng(2)))
+    assert not free.contains(np.array([0.0, 10.0]))
+
+
+@pytest.mark.parametrize(
+    "bad", [OccupancyGrid(MAP_CELLS, 0.0, (0, 0, 0)), OccupancyGrid(MAP_CELLS, 0.1, (np.nan, 0, 0))]
+)
+def test_maps_without_a_place_or_scale_are_refused(bad):
+    with pytest.raises(LocalizationError, match="resolution above 0"):
+        LikelihoodMap(bad, 2.0)
+
+
+def test_beams_that_most_particles_cannot_explain_are_skipped():
+    beams = beams_at((1.5, 1.5, 0.4))
+    blocked = Beams(np.where(np.arange(40) < 15, 0.5, beams.ranges), beams.angles, 12.0, beams.sensor_pose)
+    generator = np.random.default_rng(0)
+    particles = np.array([1.5, 1.5, 0.4]) + generator.normal(0.0, 0.01, (200, 3))
+    skipping = AmclConfig(do_beamskip=True)
+    seen = Beams(beams.ranges[15:], beams.angles[15:], 12.0, beams.sensor_pose)
+    with_skip = LikelihoodFieldProbModel(skipping).likelihoods(particles, blocked, MAP)
+    agreeing = count_agreeing(MAP.to_cells(particles), blocked.ends / MAP.resolution, MAP.distance, 0.5) / 200
+    assert (agreeing[15:] > 0.3).all()
+    kept = agreeing > 0.3
+    expected = LikelihoodFieldProbModel(CONFIG).likelihoods(
+        particles, Beams(blocked.ranges[kept], blocked.angles[kept], 12.0, beams.sensor_pose), MAP
+    )
+    assert np.allclose(with_skip, expected)
+    # Nothing is left out where nearly everything would be, or where the particles are spread.
+    all_blocked = Beams(np.full(40, 0.2), beams.angles, 12.0, beams.sensor_pose)
+    config = AmclConfig(do_beamskip=True, beam_skip_distance=0.01, beam_skip_error_threshold=0.5)
+    for model_beams, poses in ((all_blocked, particles), (seen, particles * [2.0, 1.0, 1.0])):
+        whole = LikelihoodFieldProbModel(CONFIG).likelihoods(poses, model_beams, MAP)
+        assert np.allclose(LikelihoodFieldProbModel(config).likelihoods(poses, model_beams, MAP), whole)
+
+
+def test_a_product_of_many_unlikely_beams_does_not_vanish():
+    ranges, angles = np.full(400, 5.0), np.linspace(-3.0, 3.0, 400)
+    config = AmclConfig(z_hit=0.99, z_rand=0.01)
+    likelihoods = LikelihoodFieldProbModel(config).likelihoods(
+        MAP.draw_poses(50, np.random.default_rng(3)), Beams(ranges, angles, 100.0, np.zeros(3)), MAP
+    )
+    assert np.isfinite(likelihoods).all()
+    assert likelihoods.max() > 0.0
 
 
 def test_poses_are_drawn_in_free_cells():

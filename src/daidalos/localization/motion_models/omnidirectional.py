@@ -11,10 +11,19 @@ from daidalos.localization.motion_models.motion_model import MotionModel
 
 
 class OmniMotionModel(MotionModel):
-    """Motion model of a noisy translation along and across the measured direction, and a noisy rotation."""
+    """Motion model of a noisy translation along and across the measured direction, and a noisy rotation.
 
-    def __init__(self, config: AmclConfig) -> None:
+    Parameters
+    ----------
+    config : AmclConfig
+        Its ``alpha1`` to ``alpha5`` are used.
+    corrected : bool
+        As in `DifferentialMotionModel`; False is ROS 1's ``omni``.
+    """
+
+    def __init__(self, config: AmclConfig, *, corrected: bool = True) -> None:
         self.config = config
+        self._deviation = math.sqrt if corrected else float
 
     def sample(self, particles: Array, before: Array, after: Array, generator: np.random.Generator) -> Array:
         """Implement `MotionModel.sample`."""
@@ -23,9 +32,9 @@ class OmniMotionModel(MotionModel):
         distance, turn = math.hypot(float(step[0]), float(step[1])), float(step[2])
         direction = particles[:, 2] + math.atan2(float(step[1]), float(step[0]))
         noise = generator.standard_normal((3, particles.shape[0]))
-        along = distance + noise[0] * math.sqrt(c.alpha3 * distance**2 + c.alpha1 * turn**2)
-        across = noise[1] * math.sqrt(c.alpha1 * turn**2 + c.alpha5 * distance**2)
-        turned = turn + noise[2] * math.sqrt(c.alpha4 * turn**2 + c.alpha2 * distance**2)
+        along = distance + noise[0] * self._deviation(c.alpha3 * distance**2 + c.alpha1 * turn**2)
+        across = noise[1] * self._deviation(c.alpha1 * turn**2 + c.alpha5 * distance**2)
+        turned = turn + noise[2] * self._deviation(c.alpha4 * turn**2 + c.alpha2 * distance**2)
         cosine, sine = np.cos(direction), np.sin(direction)
         return np.stack(
             [

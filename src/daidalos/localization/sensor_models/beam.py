@@ -26,13 +26,12 @@ class BeamModel(SensorModel):
         """Implement `SensorModel.likelihoods`."""
         c = self.config
         return sum_over_beams(
-            compose(particles, beams.sensor_pose),
+            world.to_cells(compose(particles, beams.sensor_pose)),
             beams.ranges,
             beams.angles,
             beams.max_range,
             world.distance,
             world.resolution,
-            world.origin,
             np.array([c.z_hit, c.z_short, c.z_max, c.z_rand, c.sigma_hit, c.lambda_short]),
         )
 
@@ -45,10 +44,9 @@ def sum_over_beams(
     max_range: float,
     distance: NDArray[np.float32],
     resolution: float,
-    origin: Array,
     mixture: Array,
 ) -> Array:
-    """Return for each sensor pose 1 plus the sum of p^3 over the beams."""
+    """Return for each sensor pose, with x and y in cells, 1 plus the sum of p^3 over the beams."""
     z_hit, z_short, z_max, z_rand = mixture[0], mixture[1], mixture[2], mixture[3]
     scale = -0.5 / (mixture[4] * mixture[4])
     rate = mixture[5]
@@ -58,7 +56,6 @@ def sum_over_beams(
             expected = cast_ray(
                 distance,
                 resolution,
-                origin,
                 sensors[i, 0],
                 sensors[i, 1],
                 sensors[i, 2] + angles[k],
@@ -76,24 +73,33 @@ def sum_over_beams(
 
 @compiled
 def cast_ray(
-    distance: NDArray[np.float32],
-    resolution: float,
-    origin: Array,
-    x: float,
-    y: float,
-    angle: float,
-    max_range: float,
+    distance: NDArray[np.float32], resolution: float, x: float, y: float, angle: float, max_range: float
 ) -> float:
-    """Return the distance along a ray to the first occupied cell, by sphere tracing in the distance field."""
+    """Return the distance [m] along a ray to the first occupied cell, by sphere tracing in the distance field.
+
+    Parameters
+    ----------
+    distance : ndarray, shape (height, width)
+        Of `LikelihoodMap`.
+    resolution : float
+        Side of a cell [m].
+    x, y : float
+        Start of the ray, in cells.
+    angle : float
+        Its direction [rad].
+    max_range : float
+        Result where it meets nothing [m].
+    """
     cosine, sine = math.cos(angle), math.sin(angle)
-    travelled = 0.0
-    while travelled < max_range:
-        column = math.floor((x + travelled * cosine - origin[0]) / resolution)
-        row = math.floor((y + travelled * sine - origin[1]) / resolution)
-        if not (0 <= column < distance.shape[1] and 0 <= row < distance.shape[0]):
+    height, width = distance.shape
+    travelled, farthest = 0.0, max_range / resolution
+    while travelled < farthest:
+        column = math.floor(x + travelled * cosine)
+        row = math.floor(y + travelled * sine)
+        if not (0 <= column < width and 0 <= row < height):
             return max_range
         away = float(distance[row, column])
         if away <= 0.0:
-            return travelled
-        travelled += max(away - 1.5 * resolution, 0.5 * resolution)
+            return travelled * resolution
+        travelled += max(away / resolution - 1.5, 0.5)
     return max_range

@@ -8,8 +8,12 @@ from numpy.typing import NDArray
 from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.localization.config import AmclConfig
-from daidalos.localization.likelihood_map import LikelihoodMap
+from daidalos.localization.likelihood_map import LikelihoodMap, Table
+from daidalos.localization.particles import are_converged
 from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
+
+SMALLEST_LOGARITHM = -600.0
+"""Below it the likelihoods of all particles are raised together, so that none of them underflows."""
 
 
 class LikelihoodFieldModel(SensorModel):
@@ -25,70 +29,80 @@ class LikelihoodFieldModel(SensorModel):
 
     def likelihoods(self, particles: Array, beams: Beams, world: LikelihoodMap) -> Array:
         """Implement `SensorModel.likelihoods`."""
-        return _sum_over_beams(self.config, particles, beams, world, product=False)
+        c = self.config
+        table = world.table(c.z_hit, c.sigma_hit, c.z_rand / beams.max_range, product=False)
+        return 1.0 + sum_over_ends(world.to_cells(particles), beams.ends / world.resolution, table)
 
 
 class LikelihoodFieldProbModel(SensorModel):
-    """AMCL's model ``likelihood_field_prob``: product of the beams' likelihoods, for static maps and few beams."""
+    """AMCL's model ``likelihood_field_prob``: product of the beams' likelihoods, for static maps and few beams.
+
+    With ``do_beamskip`` and particles that have converged, beams are left out that most particles cannot explain,
+    such as those that meet people; unless that would leave out nearly all of them.
+    """
 
     def __init__(self, config: AmclConfig) -> None:
         self.config = config
 
     def likelihoods(self, particles: Array, beams: Beams, world: LikelihoodMap) -> Array:
         """Implement `SensorModel.likelihoods`."""
-        return np.exp(_sum_over_beams(self.config, particles, beams, world, product=True))
+        c = self.config
+        poses, ends = world.to_cells(particles), beams.ends / world.resolution
+        if c.do_beamskip and ends.size and are_converged(particles):
+            ends = ends[self._explained(poses, ends, world)]
+        table = world.table(c.z_hit, c.sigma_hit, c.z_rand / beams.max_range, product=True)
+        logarithms = sum_over_ends(poses, ends, table)
+        return np.exp(logarithms + max(SMALLEST_LOGARITHM - float(logarithms.max()), 0.0))
 
-
-def _sum_over_beams(
-    config: AmclConfig, particles: Array, beams: Beams, world: LikelihoodMap, *, product: bool
-) -> Array:
-    """Evaluate the beams with an echo; the others hold no distance to an obstacle."""
-    met = beams.ranges < beams.max_range
-    angle = beams.sensor_pose[2] + beams.angles[met]
-    direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    return sum_over_ends(
-        particles,
-        beams.sensor_pose[:2] + beams.ranges[met, None] * direction,
-        world.distance,
-        world.resolution,
-        world.origin,
-        config.z_hit,
-        config.sigma_hit,
-        config.z_rand / beams.max_range,
-        world.max_distance,
-        product,
-    )
+    def _explained(self, poses: Array, ends: Array, world: LikelihoodMap) -> NDArray[np.bool_]:
+        """Return which beams enough particles agree with; all where too few are left."""
+        c = self.config
+        agreeing = count_agreeing(poses, ends, world.distance, c.beam_skip_distance) / poses.shape[0]
+        explained: NDArray[np.bool_] = agreeing > c.beam_skip_threshold
+        skipped = explained.size - int(explained.sum())
+        return np.ones_like(explained) if skipped >= c.beam_skip_error_threshold * explained.size else explained
 
 
 @compiled
-def sum_over_ends(
-    particles: Array,
-    ends: Array,
-    distance: NDArray[np.float32],
-    resolution: float,
-    origin: Array,
-    z_hit: float,
-    sigma: float,
-    random_level: float,
-    outside: float,
-    product: bool,
-) -> Array:
-    """Return for each pose 1 plus the sum of p^3 over the beams, or the sum of log p for their product."""
-    total = np.zeros(particles.shape[0])
-    scale = -0.5 / (sigma * sigma)
-    height, width = distance.shape
-    for i in range(particles.shape[0]):
-        cosine, sine = math.cos(particles[i, 2]), math.sin(particles[i, 2])
-        added = 0.0 if product else 1.0
+def sum_over_ends(poses: Array, ends: Array, table: Table) -> Array:
+    """Return for each pose the sum of the table's values at the ends of the beams.
+
+    Parameters
+    ----------
+    poses : ndarray, shape (n, 3)
+        With x and y in cells.
+    ends : ndarray, shape (k, 2)
+        In the frame of the pose, in cells.
+    table : ndarray, shape (height + 2, width + 2)
+        With a border for what is outside.
+    """
+    total = np.zeros(poses.shape[0])
+    last_row, last_column = table.shape[0] - 1, table.shape[1] - 1
+    for i in range(poses.shape[0]):
+        cosine, sine = math.cos(poses[i, 2]), math.sin(poses[i, 2])
+        x, y = poses[i, 0] + 1.0, poses[i, 1] + 1.0
+        added = 0.0
         for k in range(ends.shape[0]):
-            x = particles[i, 0] + cosine * ends[k, 0] - sine * ends[k, 1]
-            y = particles[i, 1] + sine * ends[k, 0] + cosine * ends[k, 1]
-            column = math.floor((x - origin[0]) / resolution)
-            row = math.floor((y - origin[1]) / resolution)
-            away = outside
-            if 0 <= column < width and 0 <= row < height:
-                away = float(distance[row, column])
-            p = z_hit * math.exp(scale * away * away) + random_level
-            added += math.log(p) if product else p * p * p
+            # Rounding towards zero keeps what is outside within the border.
+            column = int(x + cosine * ends[k, 0] - sine * ends[k, 1])
+            row = int(y + sine * ends[k, 0] + cosine * ends[k, 1])
+            column = min(max(column, 0), last_column)
+            row = min(max(row, 0), last_row)
+            added += table[row, column]
         total[i] = added
     return total
+
+
+@compiled
+def count_agreeing(poses: Array, ends: Array, distance: Table, threshold: float) -> NDArray[np.int64]:
+    """Return for each beam at how many of the poses it ends nearer to an obstacle than a threshold [m]."""
+    height, width = distance.shape
+    counts = np.zeros(ends.shape[0], dtype=np.int64)
+    for i in range(poses.shape[0]):
+        cosine, sine = math.cos(poses[i, 2]), math.sin(poses[i, 2])
+        for k in range(ends.shape[0]):
+            column = math.floor(poses[i, 0] + cosine * ends[k, 0] - sine * ends[k, 1])
+            row = math.floor(poses[i, 1] + sine * ends[k, 0] + cosine * ends[k, 1])
+            if 0 <= column < width and 0 <= row < height and distance[row, column] < threshold:
+                counts[k] += 1
+    return counts

@@ -33,6 +33,15 @@ class Beams:
     max_range: float
     sensor_pose: Array
 
+    @property
+    def ends(self) -> Array:
+        """Ends (k, 2) of the beams that met something, in the frame of the base [m]."""
+        met = self.ranges < self.max_range
+        angle = self.sensor_pose[2] + self.angles[met]
+        direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        ends: Array = self.sensor_pose[:2] + self.ranges[met, None] * direction
+        return ends
+
     @classmethod
     def of_scan(cls, scan: LaserScanData, config: AmclConfig) -> "Beams":
         """Select evenly spread beams of a scan, without invalid measurements."""
