@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from daidalos.common.parameters import ParameterError
-from daidalos.common.pose2 import compose, wrap
+from daidalos.common.pose2 import compose, inverse, wrap
 from daidalos.localization.amcl import Amcl
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.errors import LocalizationError
@@ -157,7 +157,7 @@ def test_another_map_is_taken_over_and_a_bad_one_is_not():
     [
         ({"min_particles": 10, "max_particles": 5}, "min_particles"),
         ({"max_beams": 1}, "max_beams"),
-        ({"pf_z": 1.0}, "pf_z"),
+        ({"pf_z": 0.0}, "pf_z"),
         ({"recovery_alpha_slow": 0.2, "recovery_alpha_fast": 0.1}, "recovery_alpha_slow"),
         ({"alpha3": -0.1}, "alpha3"),
         ({"sigma_hit": 0.0}, "sigma_hit"),
@@ -203,7 +203,7 @@ def test_parameters_change_while_it_runs():
     filter_.initialize(START, NEAR)
     wanderer = wandering_from_start(4)
     errors(filter_, wanderer, 20)
-    filter_.reconfigure(AmclConfig(laser_model_type="likelihood_field_prob", max_particles=700, refine_pose=False))
+    filter_.reconfigure(AmclConfig(recovery_alpha_slow=0.0, max_particles=700, refine_pose=False))
     assert errors(filter_, wanderer, 60)[20:, 0].max() < 0.3
     assert filter_.update(*wanderer.step()[:2]).weights.size <= 700
 
@@ -223,3 +223,33 @@ def test_the_seed_is_a_parameter():
     drawn = [Amcl(AmclConfig(random_seed=seed), MAP)._particles for seed in (1, 1, 2)]
     assert np.array_equal(drawn[0], drawn[1])
     assert not np.array_equal(drawn[0], drawn[2])
+
+
+@pytest.mark.parametrize("robot_moved", [True, False])
+def test_a_jump_of_odometry_is_followed_if_the_scan_says_so(robot_moved):
+    filter_ = Amcl(AmclConfig(), MAP, seed=6)
+    filter_.initialize(START, NEAR)
+    wanderer = wandering_from_start(6)
+    errors(filter_, wanderer, 30)
+    before = wanderer.step()[0]
+    if robot_moved:
+        there = np.array([6.5, 3.8, 2.0])
+        jumped = compose(before, compose(inverse(wanderer.robot.pose), there))
+        wanderer.carry(there)
+    else:
+        jumped = np.zeros(3)
+    filter_.update(jumped, wanderer.robot.scan(), odometry_jumped=True)
+    for _ in range(10):
+        filter_.request_nomotion_update()
+        pose = filter_.update(jumped, wanderer.robot.scan()).pose
+    assert math.hypot(*(pose - wanderer.robot.pose)[:2]) < 0.1
+
+
+def test_selective_resampling_keeps_the_weights_until_few_particles_carry_them():
+    weights = []
+    for selective in (False, True):
+        filter_ = Amcl(AmclConfig(selective_resampling=selective), MAP, seed=7)
+        filter_.initialize(START, np.diag([1e-6, 1e-6, 1e-6]))
+        weights.append(filter_.update(np.zeros(3), wandering_from_start(7).robot.scan()).weights)
+    assert np.ptp(weights[0]) == 0.0
+    assert np.ptp(weights[1]) > 0.0

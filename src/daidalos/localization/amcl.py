@@ -104,7 +104,8 @@ class Amcl:
         self._use(config)
         self._particles: Array = np.zeros((1, 3))
         self._weights: Array = np.ones(1)
-        self._odom: Array | None = None
+        self._odom: Array = np.zeros(3)
+        self._anchored = False
         self._map_to_odom: Array = np.zeros(3)
         self.initialize(np.zeros(3), DEFAULT_COVARIANCE)
 
@@ -160,7 +161,7 @@ class Amcl:
         """Use the next scan even if the robot has not moved."""
         self._forced = True
 
-    def update(self, odom_pose: Array, scan: LaserScanData) -> Estimate:
+    def update(self, odom_pose: Array, scan: LaserScanData, *, odometry_jumped: bool = False) -> Estimate:
         """Update the particles with a scan and the odometry pose at its time.
 
         Parameters
@@ -169,27 +170,45 @@ class Amcl:
             Pose (x, y, yaw) of the base in odometry's frame.
         scan : LaserScanData
             The scan, with the pose of its sensor.
+        odometry_jumped : bool
+            Whether odometry moved as no robot can. Half of the particles follow, as when a simulated robot was
+            moved, half stay, as when odometry began anew; the scan decides.
 
         Returns
         -------
         Estimate
             Pose in the map; from odometry alone while the robot has hardly moved.
         """
+        if not self._anchored:
+            self._anchored = True
+            self._odom = odom_pose.copy()
+            self._map_to_odom = compose(self._mean, inverse(odom_pose))
         beams = Beams.of_scan(scan, self.config)
-        moved = self._odom is not None and self._moved(odom_pose)
-        due = self._odom is None or moved or self._forced or self._settling > 0
+        moved = self._moved(odom_pose)
+        due = moved or self._forced or self._settling > 0
         if not due or not beams.ranges.size:
             return self._estimate(odom_pose, updated=False)
-        if self._odom is not None:
-            self._particles = self._motion.sample(self._particles, self._odom, odom_pose, self._generator)
-            if self._settling and not moved:
-                self._particles += ROUGHENING * self._generator.standard_normal(self._particles.shape)
-        self._odom = odom_pose.copy()
+        self._move(odom_pose, odometry_jumped)
+        if self._settling and not moved:
+            self._particles += ROUGHENING * self._generator.standard_normal(self._particles.shape)
         self._forced = False
         self._settling = max(self._settling - 1, 0)
         self._weigh(beams)
         self._look_closely(odom_pose, beams)
         return self._estimate(odom_pose, updated=True)
+
+    def _move(self, odom_pose: Array, odometry_jumped: bool) -> None:
+        """Move the particles as odometry did since they last moved."""
+        if odometry_jumped:
+            # Moved as a whole: with each particle's own heading, a jump over metres would scatter them.
+            there = compose(self._map_to_odom, odom_pose)
+            followed = compose(compose(there, inverse(compose(self._map_to_odom, self._odom))), self._particles)
+            follows = self._generator.random(followed.shape[0]) < 0.5
+            self._particles = np.where(follows[:, None], followed, self._particles)
+            self._settling = self.config.updates_after_initial_pose
+        else:
+            self._particles = self._motion.sample(self._particles, self._odom, odom_pose, self._generator)
+        self._odom = odom_pose.copy()
 
     def _use(self, config: AmclConfig) -> None:
         self._world = _likelihood_map(config, self._grid)
@@ -200,16 +219,16 @@ class Amcl:
     def _begin(self, particles: Array) -> None:
         self._particles = particles
         self._weights = np.full(particles.shape[0], 1.0 / particles.shape[0])
-        self._odom = None
+        self._anchored = False
         self._forced = False
-        self._settling = 0
+        self._settling = 1
         self._scans = 0
         self._slow = self._fast = 0.0
         self._mean, self._covariance = mean_and_covariance(particles, self._weights)
         self._map_to_odom = np.zeros(3)
 
     def _moved(self, odom_pose: Array) -> bool:
-        step = between(self._odom if self._odom is not None else odom_pose, odom_pose)
+        step = between(self._odom, odom_pose)
         far = math.hypot(float(step[0]), float(step[1])) >= self.config.update_min_d
         return far or abs(float(step[2])) >= self.config.update_min_a
 
@@ -224,7 +243,10 @@ class Amcl:
             self._weights = np.full(weights.size, 1.0 / weights.size)
         self._follow_average(average)
         self._scans += 1
-        if self._scans % self.config.resample_interval == 0:
+        effective = 1.0 / float(self._weights @ self._weights)
+        if self._scans % self.config.resample_interval == 0 and (
+            not self.config.selective_resampling or effective < 0.5 * self._weights.size
+        ):
             self._resample()
 
     def _follow_average(self, average: float) -> None:

@@ -62,10 +62,15 @@ class AmclConfig(Parameters):
     pf_err: float = parameter(
         0.05, "Bound of the Kullback-Leibler distance to the true distribution in KLD sampling.", above=0.0
     )
-    pf_z: float = parameter(0.99, "Probability with which that bound holds.", above=0.0, below=1.0)
+    pf_z: float = parameter(
+        0.99, "Quantile of the standard normal distribution with whose probability that bound holds.", above=0.0
+    )
     update_min_d: float = parameter(0.25, "Motion after which a scan is used.", unit="m", minimum=0.0)
     update_min_a: float = parameter(0.2, "Turn after which a scan is used.", unit="rad", minimum=0.0)
     resample_interval: int = parameter(1, "Scans between two resamplings.", minimum=1)
+    selective_resampling: bool = parameter(
+        False, "Whether particles are resampled only when less than half of them carry the weight, as in ROS 1."
+    )
     recovery_alpha_slow: float = parameter(
         0.001, "Decay of the slow average of the weights; 0 turns recovery off.", minimum=0.0, maximum=1.0
     )

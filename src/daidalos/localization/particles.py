@@ -1,7 +1,6 @@
 """Sets of weighted particles: resampling, required number, clusters and moments."""
 
 import math
-from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +74,7 @@ def count_bins(particles: Array, chosen: NDArray[np.int64]) -> int:
     return 1 + int((bins[1:] != bins[:-1]).sum())
 
 
-def kld_bound(bins: int, error: float, probability: float) -> int:
+def kld_bound(bins: int, error: float, quantile: float) -> int:
     """Return the number of particles that bounds the Kullback-Leibler divergence to the truth (Fox 2003).
 
     Parameters
@@ -84,15 +83,14 @@ def kld_bound(bins: int, error: float, probability: float) -> int:
         Number of bins that the distribution covers.
     error : float
         Bound of the distance.
-    probability : float
-        With which it has to hold.
+    quantile : float
+        Of the standard normal distribution; 2.33 for a bound that holds with a probability of 0.99.
     """
     if bins <= 1:
         return 1
-    z = NormalDist().inv_cdf(probability)
     k = bins - 1
     a = 2.0 / (9.0 * k)
-    return math.ceil(k / (2.0 * error) * (1.0 - a + math.sqrt(a) * z) ** 3)
+    return math.ceil(k / (2.0 * error) * (1.0 - a + math.sqrt(a) * quantile) ** 3)
 
 
 @compiled
