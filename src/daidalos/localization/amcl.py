@@ -100,6 +100,7 @@ class Amcl:
         if seed is None and config.random_seed >= 0:
             seed = config.random_seed
         self._generator = np.random.default_rng(seed)
+        self.config = config
         self._grid = grid
         self._use(config)
         self._particles: Array = np.zeros((1, 3))
@@ -203,8 +204,8 @@ class Amcl:
             # Moved as a whole: with each particle's own heading, a jump over metres would scatter them.
             there = compose(self._map_to_odom, odom_pose)
             followed = compose(compose(there, inverse(compose(self._map_to_odom, self._odom))), self._particles)
-            follows = self._generator.random(followed.shape[0]) < 0.5
-            self._particles = np.where(follows[:, None], followed, self._particles)
+            follows = np.less(self._generator.random(followed.shape[0]), 0.5)
+            self._particles = np.where(follows.reshape(-1, 1), followed, self._particles)
             self._settling = self.config.updates_after_initial_pose
         else:
             self._particles = self._motion.sample(self._particles, self._odom, odom_pose, self._generator)

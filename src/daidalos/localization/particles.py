@@ -103,7 +103,8 @@ def heaviest_cluster(particles: Array, weights: Array) -> NDArray[np.bool_]:
     total = np.zeros(bins.shape[0])
     for i in range(weights.shape[0]):
         total[cluster[i]] += weights[i]
-    return cluster == np.argmax(total)
+    members: NDArray[np.bool_] = cluster == np.argmax(total)
+    return members
 
 
 @compiled
@@ -133,7 +134,7 @@ def _slot_of(number: int, bins: NDArray[np.int64], slots: NDArray[np.int64]) -> 
     slot = ((number ^ (number >> 19) ^ (number >> 37)) * 40503) & (slots.shape[0] - 1)
     while slots[slot] >= 0 and bins[slots[slot]] != number:
         slot = (slot + 1) & (slots.shape[0] - 1)
-    return slot
+    return int(slot)
 
 
 @compiled

@@ -169,6 +169,29 @@ def declare_given(node: Node) -> None:
     node.declare_parameters("", given, ignore_override=True)
 
 
+def declare_without_effect(node: Node, reasons: Mapping[str, str]) -> None:
+    """Declare those of some parameters that are given to a node, and name them once with why they have no effect.
+
+    Parameters
+    ----------
+    node : Node
+        Whose parameters they are.
+    reasons : mapping
+        Why a parameter has no effect, by its name.
+    """
+    from rcl_interfaces.msg import ParameterDescriptor
+
+    named: dict[str, list[str]] = {}
+    for name, reason in reasons.items():
+        given = node._parameter_overrides.get(name)
+        if given is not None and not node.has_parameter(name):
+            descriptor = ParameterDescriptor(description=f"No effect: {reason}.")
+            node.declare_parameter(name, given.value, descriptor, ignore_override=True)
+            named.setdefault(reason, []).append(name)
+    for reason, names in named.items():
+        node.get_logger().info(f"without effect: {', '.join(names)}: {reason}")
+
+
 def typed_value(node: Node, name: str, default: Any) -> Any:
     """Return the value of a parameter of any name, which has the type of a default; the default where it is not set.
 

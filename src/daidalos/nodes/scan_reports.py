@@ -15,7 +15,7 @@ REPORT_INTERVAL_NS = 10_000_000_000
 LATE_NS = 1_000_000_000
 """Time [ns] after which a scan that still waits for a transform is reported."""
 
-SILENCE_NS = 5_000_000_000
+SILENCE_NS = 1_500_000_000
 """Time [ns] without any scan after which that is reported."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast, get_args
 
@@ -18,6 +18,7 @@ from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import FREE_THRESHOLD, OCCUPIED_THRESHOLD, Mode, save_map
 from daidalos.mapping.map_image import Format
 from daidalos.nodes.conversions import grid_array, pose2_of
+from daidalos.nodes.parameters import declare
 
 MODES, FORMATS = get_args(Mode), get_args(Format)
 
@@ -50,7 +51,7 @@ class SaveRequest:
 class MapSaverParameters(Parameters):
     """Parameters of Nav2's map_saver."""
 
-    save_map_timeout: float = parameter(5.0, "How long to wait for a map.", unit="s", minimum=0.0)
+    save_map_timeout: float = parameter(5.0, "How long to wait for a map; 0 for ever.", unit="s", minimum=0.0)
     free_thresh_default: float = parameter(
         FREE_THRESHOLD, "Occupancy below which a cell is free.", minimum=0.0, maximum=1.0
     )
@@ -58,6 +59,33 @@ class MapSaverParameters(Parameters):
         OCCUPIED_THRESHOLD, "Occupancy above which a cell is occupied.", minimum=0.0, maximum=1.0
     )
     map_subscribe_transient_local: bool = parameter(True, "Whether the map is taken from a latched topic.")
+
+
+def save_once(save_request: SaveRequest, settings: MapSaverParameters | None = None) -> bool:
+    """Save a map with a node of its own; False, after a word in the log, when that failed.
+
+    Parameters
+    ----------
+    save_request : SaveRequest
+        What to save; a file name is made where it has none.
+    settings : MapSaverParameters or None
+        Declared as the node's parameters where None.
+    """
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+
+    rclpy.init()
+    node = Node("map_saver")
+    try:
+        parameters = settings or declare(node, MapSaverParameters)
+        stem = save_request.stem or f"map_{node.get_clock().now().nanoseconds // 1_000_000_000}"
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        task = executor.create_task(save, node, parameters, replace(save_request, stem=stem))
+        executor.spin_until_future_complete(task)
+        return bool(task.result())
+    finally:
+        node.destroy_node()
 
 
 async def save(node: Node, parameters: MapSaverParameters, save_request: SaveRequest) -> bool:
@@ -95,11 +123,13 @@ async def _next_map(node: Node, parameters: MapSaverParameters, topic: str) -> A
     qos = QoSProfile(depth=1, durability=durability)
     group = MutuallyExclusiveCallbackGroup()  # the caller may hold the node's own group
     subscription = node.create_subscription(OccupancyGridMessage, topic, take, qos, callback_group=group)
-    timer = node.create_timer(parameters.save_map_timeout, lambda: take(None), callback_group=group)
+    timeout = parameters.save_map_timeout
+    timer = node.create_timer(timeout, lambda: take(None), callback_group=group) if timeout else None
     try:
         return await came
     finally:
-        node.destroy_timer(timer)
+        if timer is not None:
+            node.destroy_timer(timer)
         node.destroy_subscription(subscription)
 
 

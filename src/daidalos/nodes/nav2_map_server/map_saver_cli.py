@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from rclpy.node import Node
-
-from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, MapSaverParameters, SaveRequest, save
-from daidalos.nodes.parameters import declare
+from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, SaveRequest, save_once
 from daidalos.nodes.runner import program_arguments, run_program
 
 
@@ -23,28 +20,10 @@ def _parse() -> argparse.Namespace:
     return parser.parse_args(program_arguments())
 
 
-def _save(arguments: argparse.Namespace) -> bool:
-    import rclpy
-    from rclpy.executors import SingleThreadedExecutor
-
-    rclpy.init()
-    node = Node("map_saver")
-    try:
-        parameters = declare(node, MapSaverParameters)
-        stem = arguments.stem or f"map_{node.get_clock().now().nanoseconds // 1_000_000_000}"
-        save_request = SaveRequest(arguments.topic, stem, arguments.mode, arguments.fmt, arguments.occ, arguments.free)
-        executor = SingleThreadedExecutor()
-        executor.add_node(node)
-        task = executor.create_task(save, node, parameters, save_request)
-        executor.spin_until_future_complete(task)
-        return bool(task.result())
-    finally:
-        node.destroy_node()
-
-
 def main() -> int:
     """Save the map; the exit status is 1 when that failed."""
-    arguments = _parse()
+    given = _parse()
+    save_request = SaveRequest(given.topic, given.stem, given.mode, given.fmt, given.occ, given.free)
     saved: list[bool] = []
-    status = run_program(lambda: saved.append(_save(arguments)), interrupted=1)
+    status = run_program(lambda: saved.append(save_once(save_request)), interrupted=1)
     return status or int(saved != [True])

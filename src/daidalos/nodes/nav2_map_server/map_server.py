@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
+from rclpy.node import Node
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.errors import MapFileError
@@ -70,21 +71,7 @@ class MapServer(ManagedNode):
         return super().on_activate(state)
 
     def _load(self, url: str) -> Any:
-        """Return the message of a map file.
-
-        Raises
-        ------
-        MapFileError
-            When it cannot be read.
-        """
-        grid = load_map(_path_of(url))
-        stamp = self.get_clock().now().to_msg()
-        frame = self._settings.frame_id
-        message = grid_message(grid.data, grid.resolution, grid.origin[:2], frame, stamp)
-        message.info.origin = pose_message(grid.origin)
-        rows, columns = grid.data.shape
-        self.get_logger().info(f"Read map {url}: {columns} X {rows} map @ {grid.resolution:.3g} m/cell")
-        return message
+        return read_map(self, url, self._settings.frame_id)
 
     def _publish(self) -> None:
         if self._map is not None:
@@ -106,20 +93,45 @@ class MapServer(ManagedNode):
             self._map = self._load(request.map_url)
         except MapFileError as error:
             self.get_logger().error(f"Failed to load map: {error}")
-            of_yaml = error.path.suffix == ".yaml"
-            missing = of_yaml and not error.path.exists()
-            response.result = (
-                response.RESULT_MAP_DOES_NOT_EXIST
-                if missing
-                else response.RESULT_INVALID_MAP_METADATA
-                if of_yaml
-                else response.RESULT_INVALID_MAP_DATA
-            )
+            response.result = load_result(error, response)
             return response
         self._publish()
         response.map = self._map
         response.result = response.RESULT_SUCCESS
         return response
+
+
+def read_map(node: Node, url: str, frame: str) -> Any:
+    """Return a map file as a ``nav_msgs/msg/OccupancyGrid``.
+
+    Parameters
+    ----------
+    node
+        Whose clock and log are used.
+    url
+        A path, or a URL with ``file://`` or ``package://``.
+    frame
+        Of the map.
+
+    Raises
+    ------
+    MapFileError
+        When it cannot be read.
+    """
+    grid = load_map(_path_of(url))
+    message = grid_message(grid.data, grid.resolution, grid.origin[:2], frame, node.get_clock().now().to_msg())
+    message.info.origin = pose_message(grid.origin)
+    rows, columns = grid.data.shape
+    node.get_logger().info(f"Read map {url}: {columns} X {rows} map @ {grid.resolution:.3g} m/cell")
+    return message
+
+
+def load_result(error: MapFileError, response: Any) -> int:
+    """Return the result code of a ``LoadMap`` response for an error."""
+    of_yaml = error.path.suffix in (".yaml", ".yml")
+    if of_yaml and not error.path.exists():
+        return int(response.RESULT_MAP_DOES_NOT_EXIST)
+    return int(response.RESULT_INVALID_MAP_METADATA if of_yaml else response.RESULT_INVALID_MAP_DATA)
 
 
 def _path_of(url: str) -> Path:

@@ -53,12 +53,6 @@ class IncludeMapping:
     arguments: Mapping[str, str | None] = field(default_factory=dict)
 
 
-def _map_file(arguments: str) -> tuple[str, dict[str, str]]:
-    """Convert `map_server`'s argument to today's parameter; no lifecycle manager activates the node."""
-    words = _words(arguments)
-    return "", {"autostart_node": "true", **({"yaml_filename": words[0]} if words else {})}
-
-
 def _without_period(arguments: str) -> tuple[str, dict[str, str]]:
     """Drop the last of `static_transform_publisher`'s arguments: transforms that do not change are sent once."""
     words = _words(arguments)
@@ -84,39 +78,6 @@ def _words(arguments: str) -> list[str]:
     """Split a command line; quotes and substitutions hold words together."""
     return re.findall(r"""(?:\$\([^)]*\)|"[^"]*"|'[^']*'|\S)+""", arguments)
 
-
-_AMCL = {
-    "use_map_topic": None,
-    "first_map_only": "first_map_only",
-    "gui_publish_rate": None,
-    "kld_err": "pf_err",
-    "kld_z": "pf_z",
-    "laser_max_beams": "max_beams",
-    "laser_z_hit": "z_hit",
-    "laser_z_short": "z_short",
-    "laser_z_max": "z_max",
-    "laser_z_rand": "z_rand",
-    "laser_sigma_hit": "sigma_hit",
-    "laser_lambda_short": "lambda_short",
-    "laser_min_range": "laser_min_range",
-    "laser_max_range": "laser_max_range",
-    "laser_model_type": "laser_model_type",
-    "odom_model_type": "robot_model_type",
-    "odom_alpha1": "alpha1",
-    "odom_alpha2": "alpha2",
-    "odom_alpha3": "alpha3",
-    "odom_alpha4": "alpha4",
-    "odom_alpha5": "alpha5",
-}
-
-_AMCL_VALUES = {
-    "robot_model_type": {
-        "diff": "nav2_amcl::DifferentialMotionModel",
-        "diff-corrected": "nav2_amcl::DifferentialMotionModel",
-        "omni": "nav2_amcl::OmniMotionModel",
-        "omni-corrected": "nav2_amcl::OmniMotionModel",
-    }
-}
 
 _HECTOR_MAPPING = {
     "map_resolution": "resolution",
@@ -149,7 +110,6 @@ _GMAPPING = {
 
 #: Nodes by their package and type in ROS 1.
 NODES: dict[tuple[str, str], NodeMapping] = {
-    ("amcl", "amcl"): NodeMapping("nav2_amcl", "amcl", _AMCL, _AMCL_VALUES),
     ("gazebo_ros", "spawn_model"): NodeMapping("gazebo_ros", "spawn_entity.py", arguments=_spawn),
     ("gmapping", "slam_gmapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _GMAPPING),
     ("hector_mapping", "hector_mapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _HECTOR_MAPPING),
@@ -158,8 +118,6 @@ NODES: dict[tuple[str, str], NodeMapping] = {
     ),
     ("joy", "joy_node"): NodeMapping("joy", "joy_node"),
     ("key_teleop", "key_teleop.py"): NodeMapping("key_teleop", "key_teleop"),
-    ("map_server", "map_saver"): NodeMapping("nav2_map_server", "map_saver_cli"),
-    ("map_server", "map_server"): NodeMapping("nav2_map_server", "map_server", arguments=_map_file),
     ("move_base", "move_base"): NodeMapping(
         "nav2_bringup",
         "move_base",

@@ -1,0 +1,1 @@
+"""AMCL under its ROS 1 name."""

@@ -1,0 +1,3 @@
+"""AMCL: the pose of a robot in a known map."""
+
+COMPONENTS = {"AmclNode": "amcl:AmclNode"}
