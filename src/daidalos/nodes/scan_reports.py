@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rclpy.clock import Clock, ClockType
-
 if TYPE_CHECKING:
-    from rclpy.impl.rcutils_logger import RcutilsLogger
+    from rclpy.node import Node
 
 REPORT_INTERVAL_NS = 10_000_000_000
 """Time [ns] for which a reason that was reported is not reported again."""
@@ -24,24 +22,24 @@ class ScanReports:
 
     Parameters
     ----------
-    logger
-        Takes the warnings.
+    node
+        Whose clock and log are used.
     """
 
-    def __init__(self, logger: RcutilsLogger) -> None:
-        self._logger = logger
-        self._clock = Clock(clock_type=ClockType.STEADY_TIME)
+    def __init__(self, node: Node) -> None:
+        self._logger = node.get_logger()
+        self._clock = node.get_clock()
         self._reported: dict[str, int] = {}
         self._unused: dict[str, int] = {}
         self.start()
 
     def start(self) -> None:
-        """Begin to count the time without scans."""
+        """Count the time without scans from now on."""
         self._last_scan_ns = self.now_ns
 
     @property
     def now_ns(self) -> int:
-        """Time [ns] of a clock that never stops."""
+        """Time [ns] of the node's clock."""
         return int(self._clock.now().nanoseconds)
 
     def came(self) -> None:
@@ -60,7 +58,7 @@ class ScanReports:
         """
         self._unused[kind] = self._unused.get(kind, 0) + 1
         last_ns = self._reported.get(kind)
-        if last_ns is not None and self.now_ns - last_ns < REPORT_INTERVAL_NS:
+        if last_ns is not None and 0 <= self.now_ns - last_ns < REPORT_INTERVAL_NS:
             return
         repeated = f" ({self._unused[kind]} times since the last report)" if last_ns is not None else ""
         self._reported[kind], self._unused[kind] = self.now_ns, 0

@@ -123,7 +123,7 @@ class ParameterFile:
         self.__allow_substs = normalize_typed_substitution(allow_substs, bool)
         self.__evaluated_allow_substs: bool | None = None
         self.__evaluated_param_file: pathlib.Path | None = None
-        self.__created_file: pathlib.Path | None = None
+        self.__created_files: list[pathlib.Path] = []
 
     @property
     def param_file(self) -> list[Substitution] | pathlib.Path:
@@ -144,12 +144,15 @@ class ParameterFile:
         return f"launch_ros.description.ParameterFile(param_file={file}, allow_substs={self.allow_substs})"
 
     def evaluate(self, context: LaunchContext) -> pathlib.Path:
-        """Return the file, or a temporary one in which `$(...)` has been replaced."""
+        """Return the file, or a temporary one in which `$(...)` has been replaced.
+
+        Several nodes may share a description: each evaluation makes a file, and all of them last until `cleanup`.
+        """
         path = pathlib.Path(perform_substitutions(context, self.__param_file))
         self.__evaluated_allow_substs = bool(perform_typed_substitution(context, self.__allow_substs, bool))
         if self.__evaluated_allow_substs:
-            self.cleanup()
-            path = self.__created_file = self.__replace_substitutions(context, path)
+            path = self.__replace_substitutions(context, path)
+            self.__created_files.append(path)
         self.__evaluated_param_file = path
         return path
 
@@ -168,13 +171,13 @@ class ParameterFile:
         return pathlib.Path(file.name)
 
     def cleanup(self) -> None:
-        """Delete the temporary file."""
-        if self.__created_file is not None:
+        """Delete the temporary files."""
+        for file in self.__created_files:
             with contextlib.suppress(OSError):
-                self.__created_file.unlink()
-            self.__created_file = None
+                file.unlink()
             self.__evaluated_param_file = None
+        self.__created_files.clear()
 
     def __del__(self) -> None:
-        if getattr(self, "_ParameterFile__created_file", None) is not None:
+        if hasattr(self, "_ParameterFile__created_files"):
             self.cleanup()

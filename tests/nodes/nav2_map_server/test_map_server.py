@@ -4,6 +4,7 @@ import threading
 
 import numpy as np
 import pytest
+from nav2_msgs.msg import CostmapFilterInfo
 from nav2_msgs.srv import LoadMap, SaveMap
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import GetMap
@@ -15,6 +16,7 @@ from rclpy.task import Future
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import load_map, save_map
 from daidalos.nodes.nav2_map_server._saving import MapSaverParameters, SaveRequest, save
+from daidalos.nodes.nav2_map_server.costmap_filter_info_server import CostmapFilterInfoServer
 from daidalos.nodes.nav2_map_server.map_saver_server import MapSaver
 from daidalos.nodes.nav2_map_server.map_server import MapServer
 from nodes.terminal import Terminal
@@ -132,3 +134,18 @@ def test_on_the_command_line(arena, tmp_path, domain):
         assert server.interrupt() == 0
     assert np.array_equal(load_map(tmp_path / "copy.yaml").data, CELLS)
     assert not (tmp_path / "none.yaml").exists()
+
+
+def test_filter_info_is_published_when_the_server_is_activated(node):  # noqa: F811
+    values = {"type": 1, "filter_info_topic": "/speed_info", "mask_topic": "/speed_mask", "base": 100.0}
+    server = CostmapFilterInfoServer(parameter_overrides=[Parameter(name, value=one) for name, one in values.items()])
+    came = Future()
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(CostmapFilterInfo, "speed_info", came.set_result, latched)
+    with spinning(server, node):
+        server.trigger_configure()
+        assert not came.done()
+        server.trigger_activate()
+        info = result_of(came)
+    assert (info.type, info.filter_mask_topic, info.base, info.multiplier) == (1, "/speed_mask", 100.0, 1.0)
+    server.destroy_node()

@@ -270,8 +270,11 @@ def test_parameter_files(context, tmp_path):
     temporary = replaced.evaluate(context)
     assert replaced.allow_substs is True
     assert temporary.read_text() == "/**:\n  ros__parameters:\n    a: 1\n"
+    again = replaced.evaluate(context)  # for the next node, while the first one has yet to read its file
+    assert temporary.exists()
     replaced.cleanup()
     assert not temporary.exists()
+    assert not again.exists()
     assert "a.yaml" in str(ParameterFile(path))
     path.write_text("a: $(env LT_BROKEN)")
     context.environment["LT_BROKEN"] = "["

@@ -28,7 +28,7 @@ def _parse() -> argparse.Namespace:
     add("--occ", type=_percentage, default=65.0, metavar="PERCENT", help="cells from it on are occupied")
     add("--free", type=_percentage, default=25.0, metavar="PERCENT", help="cells up to it are free")
     add("-f", dest="stem", default="map", metavar="MAPNAME", help="path of the files, without extension")
-    add("topic", nargs="?", type=_topic, default="map", metavar="map:=TOPIC", help="topic of the map")
+    add("topic", nargs="?", type=_topic, default="map:=map", metavar="map:=TOPIC", help="topic of the map")
     return parser.parse_args(program_arguments())
 
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from rclpy.task import Future
@@ -78,8 +77,7 @@ class Localizer:
         self._node, self._settings = node, settings
         self._is_active = is_active
         self._log = node.get_logger()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._reports = ScanReports(self._log)
+        self._reports = ScanReports(node)
         self._lock = threading.RLock()
         self._filter: Amcl | None = None
         self._grid: OccupancyGrid | None = None
@@ -98,8 +96,9 @@ class Localizer:
         self._broadcaster = TransformBroadcaster(node)
         self._inputs: list[Any] = []
         self._listen()
-        self._timer = node.create_timer(_WATCH_PERIOD, self._watch, clock=self._steady)
+        self._timer = node.create_timer(_WATCH_PERIOD, self._watch)
         self._compiled: Future = warm_up_in_background("daidalos.localization", self._log)
+        self._compiled.add_done_callback(lambda _: self.start())
 
     def _create_publishers(self) -> None:
         from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
@@ -144,7 +143,7 @@ class Localizer:
             self._listen()
 
     def start(self) -> None:
-        """Begin to count the time without scans."""
+        """Count the time without scans from now on."""
         self._reports.start()
 
     # Maps.
@@ -347,7 +346,7 @@ class Localizer:
 
     def _watch(self) -> None:
         """Report a scan that waits for its odometry in vain, and that no scans come."""
-        if not self._is_active():
+        if not self._is_active() or not self._compiled.done():
             return
         p, waiting = self._settings, self._waiting
         if waiting is not None and self._reports.now_ns - waiting[0] > LATE_NS:

@@ -32,11 +32,9 @@ _COMPILED = re.compile(
 _OF_ROS1 = {
     "actionlib": "rclpy",
     "actionlib_msgs": "action_msgs",
-    "amcl": "nav2_amcl",
     "gmapping": "slam_toolbox",
     "hector_mapping": "slam_toolbox",
     "hector_slam": "slam_toolbox",
-    "map_server": "nav2_map_server",
     "move_base": "nav2_bringup",
     "move_base_msgs": "nav2_msgs",
     "roscpp_tutorials": "demo_nodes_cpp",
