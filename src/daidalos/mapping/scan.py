@@ -118,7 +118,7 @@ def to_cloud(scan: LaserScanData, max_range: float, twist: tuple[float, float, f
     pose = np.array(scan.sensor_pose, dtype=np.float64)
     ends, normals, cleared = _ends_and_normals(
         ranges,
-        _directions(scan),
+        directions(scan),
         abs(float(scan.angle_increment)),
         float(scan.range_min),
         float(scan.range_max),
@@ -131,7 +131,7 @@ def to_cloud(scan: LaserScanData, max_range: float, twist: tuple[float, float, f
     return Cloud(ends[kept], normals[kept], ends, cleared, pose[:2].copy())
 
 
-def _directions(scan: LaserScanData) -> Array:
+def directions(scan: LaserScanData) -> Array:
     """Return the horizontal part (n, 2) of every beam's unit vector in the frame of the base."""
     angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
     beams = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -139,8 +139,8 @@ def _directions(scan: LaserScanData) -> Array:
     yaw = scan.sensor_pose[2]
     level = np.array([[np.cos(pitch), np.sin(pitch) * np.sin(roll)], [0.0, np.cos(roll)]])
     turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
-    directions: Array = np.ascontiguousarray(beams @ (turn @ level).T)
-    return directions
+    horizontal: Array = np.ascontiguousarray(beams @ (turn @ level).T)
+    return horizontal
 
 
 @compiled

@@ -43,7 +43,7 @@ class ScanReports:
         return int(self._clock.now().nanoseconds)
 
     def came(self) -> None:
-        """Note that a scan came."""
+        """Record that a scan came."""
         self._last_scan_ns = self.now_ns
 
     def report(self, kind: str, text: str) -> None:

@@ -111,6 +111,16 @@ def test_beams_are_spread_over_the_scan_and_useless_ones_left_out():
     assert Beams.of_scan(scan, AmclConfig(max_beams=500, laser_max_range=2.5)).ranges.max() == 2.5
 
 
+def test_beams_of_a_lidar_mounted_upside_down_go_the_other_way_round():
+    ranges = np.linspace(1.0, 3.0, 21)
+    upright = LaserScanData(ranges, -1.0, 0.1, 0.1, 20.0, 0.0, (0.1, 0.0, 0.5))
+    inverted = LaserScanData(ranges, -1.0, 0.1, 0.1, 20.0, 0.0, (0.1, 0.0, 0.5), (math.pi, 0.0))
+    assert np.allclose(Beams.of_scan(inverted, CONFIG).angles, -Beams.of_scan(upright, CONFIG).angles)
+    pitched = LaserScanData(ranges, -1.0, 0.1, 0.1, 20.0, 0.0, (0.1, 0.0, 0.5), (0.0, 0.2))
+    ahead = Beams.of_scan(pitched, CONFIG).ranges[10]
+    assert ahead == pytest.approx(2.0 * math.cos(0.2))
+
+
 def test_a_scan_without_beams():
     empty = Beams.of_scan(LaserScanData(np.zeros(0), 0.0, 0.1), CONFIG)
     assert empty.ranges.size == 0

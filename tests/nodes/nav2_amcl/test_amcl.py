@@ -207,11 +207,11 @@ def test_initial_poses_of_parameters_and_files(stage: Set, tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"ranges": array("f", [math.nan] * 180)}, "none of its 180 ranges"),
-        ({"ranges": array("f", [math.inf] * 180)}, "none of its 180 ranges"),
+        ({"ranges": array("f", [math.nan] * 180)}, "all its 180 ranges are NaN"),
+        ({"ranges": array("f", [math.inf] * 180)}, "all its 180 ranges are infinite"),
         ({"ranges": array("f")}, "it has no ranges"),
         ({"angle_min": math.nan}, "its angle_min is nan"),
-        ({"range_max": 0.0}, "range_max 0"),
+        ({"range_max": 0.0}, "is not below its range_max (0)"),
     ],
 )
 def test_scans_that_say_nothing_are_reported_and_ignored(localized: Bench, changes: dict[str, Any], words: str) -> None:
@@ -228,7 +228,7 @@ def test_missing_transforms_and_scans_are_reported(localized: Bench) -> None:
     scan = {"header": type(bench.poses[-1].header)(frame_id="camera", stamp=bench.stage.stamp)}
     for _ in range(5):
         bench.look(**scan)
-    assert len(bench.warnings("there is no transform from camera to base_footprint")) == 1
+    assert len(bench.warnings("waiting for the transform from camera to base_footprint")) == 1
     bench.look(with_odometry=False)
     bench.wait_for("waiting for its odometry")
     bench.look()

@@ -9,7 +9,7 @@ import numpy as np
 from daidalos.common.arrays import Array
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.likelihood_map import LikelihoodMap
-from daidalos.mapping.scan import LaserScanData
+from daidalos.mapping.scan import LaserScanData, directions
 
 
 @dataclass(frozen=True)
@@ -55,13 +55,13 @@ class Beams:
         if not math.isfinite(farthest):
             farthest = 1e3
         picked = np.minimum(ranges[chosen], farthest)
+        angles = scan.angle_min + scan.angle_increment * chosen.astype(np.float64)
         valid = picked >= max(nearest, 1e-6)
-        return cls(
-            picked[valid],
-            scan.angle_min + scan.angle_increment * chosen[valid].astype(np.float64),
-            float(farthest),
-            np.array(scan.sensor_pose, dtype=np.float64),
-        )
+        if any(scan.sensor_tilt):
+            horizontal = directions(scan)[chosen]
+            angles = np.arctan2(horizontal[:, 1], horizontal[:, 0]) - scan.sensor_pose[2]
+            picked = np.where(picked < farthest, picked * np.hypot(*horizontal.T), picked)
+        return cls(picked[valid], angles[valid], float(farthest), np.array(scan.sensor_pose, dtype=np.float64))
 
 
 class SensorModel(ABC):

@@ -5,24 +5,29 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from daidalos.common.parameters import Parameters, parameter, parameters_from, values_of
+from daidalos.common.parameters import Parameters, parameter, parameters_from
 from daidalos.localization.config import LASER_MODELS
 from daidalos.nodes.nav2_amcl._parameters import AmclParameters
 
-_RENAMED = {
+_NAMES = {
     "odom_model_type": "robot_model_type",
     "kld_err": "pf_err",
     "kld_z": "pf_z",
+    "laser_lambda_short": "lambda_short",
     **{f"odom_alpha{k}": f"alpha{k}" for k in range(1, 6)},
     **{f"laser_{name}": name for name in ("max_beams", "z_hit", "z_short", "z_max", "z_rand", "sigma_hit")},
-    "laser_lambda_short": "lambda_short",
-}
-"""Nav2's names of parameters that have another one."""
-
-_OF_THE_NODE = (
-    "use_map_topic", "gui_publish_rate", "save_pose_rate",
-    "initial_pose_x", "initial_pose_y", "initial_pose_a", "initial_cov_xx", "initial_cov_yy", "initial_cov_aa",
-)  # fmt: skip
+    **{
+        name: name
+        for name in (
+            "laser_model_type", "laser_min_range", "laser_max_range", "laser_likelihood_max_dist", "do_beamskip",
+            "beam_skip_distance", "beam_skip_threshold", "beam_skip_error_threshold", "min_particles", "max_particles",
+            "update_min_d", "update_min_a", "resample_interval", "selective_resampling", "recovery_alpha_slow",
+            "recovery_alpha_fast", "transform_tolerance", "tf_broadcast", "odom_frame_id", "base_frame_id",
+            "global_frame_id",
+        )
+    },
+}  # fmt: skip
+"""Nav2's names of the parameters that both nodes have."""
 
 
 def _number(default: float, description: str, **constraints: object) -> float:
@@ -108,8 +113,6 @@ class Ros1AmclParameters(Parameters):
 
     def for_nav2(self) -> AmclParameters:
         """Return the parameters by their Nav2 names."""
-        values = {
-            _RENAMED.get(name, name): value for name, value in values_of(self).items() if name not in _OF_THE_NODE
-        }
+        values = {new: getattr(self, old) for old, new in _NAMES.items()}
         values["first_map_only"] = self.first_map_only or not self.use_map_topic
         return parameters_from(AmclParameters, values)

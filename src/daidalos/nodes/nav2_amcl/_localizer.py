@@ -20,6 +20,7 @@ from daidalos.common.pose2 import between, compose
 from daidalos.localization.amcl import DEFAULT_COVARIANCE, Amcl, Estimate
 from daidalos.localization.errors import LocalizationError
 from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.scan import scan_problem
 from daidalos.nodes.conversions import (
     grid_array,
     pose2_of,
@@ -279,9 +280,9 @@ class Localizer:
         if not self._is_active() or not self._compiled.done() or not self._is_ready():
             return
         frame, p = scan.header.frame_id, self._settings
-        sensor_pose = self._sensor_poses.find(frame)
-        if sensor_pose is None:
-            self._refuse(frame, f"there is no transform from {frame} to {p.base_frame_id}")
+        mount = self._sensor_poses.mount(frame)
+        if mount is None:
+            self._refuse(frame, self._sensor_poses.missing(frame))
             return
         self._waiting = (self._reports.now_ns, scan)
         odometry = await self._buffer.transform_at(p.odom_frame_id, p.base_frame_id, scan.header.stamp)
@@ -289,13 +290,14 @@ class Localizer:
         if odometry is None:
             self._refuse(frame, f"{p.odom_frame_id} -> {p.base_frame_id} is not known at its time, but later")
             return
-        problem = _problem_of(scan)
+        data = scan_data(scan, mount)
+        problem = scan_problem(data)
         if problem:
             self._refuse(frame, problem)
             return
         with self._lock:
             if self._filter is not None and self._is_active():
-                self._use_scan(scan, scan_data(scan, sensor_pose), pose2_of_transform(odometry.transform))
+                self._use_scan(scan, data, pose2_of_transform(odometry.transform))
 
     def _is_ready(self) -> bool:
         """Return whether there are a map and a pose to begin with; report what is missing."""
@@ -405,18 +407,3 @@ def _covariance_of(message: Any) -> Array:
     matrix = np.array(message.pose.covariance, dtype=np.float64).reshape(6, 6)
     chosen: Array = matrix[np.ix_(_XY_YAW, _XY_YAW)]
     return 0.5 * (chosen + chosen.T)
-
-
-def _problem_of(scan: Any) -> str:
-    """Return why a scan says nothing, an empty string where it says something."""
-    ranges = np.frombuffer(scan.ranges, dtype=np.float32)
-    if not ranges.size:
-        return "it has no ranges"
-    if not (math.isfinite(scan.angle_min) and math.isfinite(scan.angle_increment)) or scan.range_max <= 0.0:
-        return (
-            f"its angle_min is {scan.angle_min:g}, its angle_increment {scan.angle_increment:g} and its range_max "
-            f"{scan.range_max:g}"
-        )
-    if not (np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges < scan.range_max)).any():
-        return f"none of its {ranges.size} ranges is between {scan.range_min:g} and {scan.range_max:g} m"
-    return ""

@@ -9,7 +9,7 @@ from daidalos.common.parameters import ParameterError, parameter
 from daidalos.mapping.config import SlamConfig
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    pass
 
 _SOLVER = "poses are solved by a sparse Levenberg-Marquardt of its own, with a Cauchy kernel on loop closures"
 _SEARCH = "the search is exact and its result refined to lines, so no grid limits it"
@@ -92,18 +92,3 @@ class MapAndLocalizationParameters(SlamToolboxParameters):
     """Parameters of the node that both maps and localizes."""
 
     localization_on_configure: bool = parameter(False, "Whether it begins with localization.", read_only=True)
-
-
-def declare_without_effect(node: Node) -> None:
-    """Declare the given parameters of `WITHOUT_EFFECT`, and name each of them once with its reason."""
-    from rcl_interfaces.msg import ParameterDescriptor
-
-    reasons: dict[str, list[str]] = {}
-    for name, reason in WITHOUT_EFFECT.items():
-        given = node._parameter_overrides.get(name)
-        if given is not None and not node.has_parameter(name):
-            text = f"No effect: {reason}."
-            node.declare_parameter(name, given.value, ParameterDescriptor(description=text), ignore_override=True)
-            reasons.setdefault(reason, []).append(name)
-    for reason, names in reasons.items():
-        node.get_logger().info(f"without effect: {', '.join(names)}: {reason}")

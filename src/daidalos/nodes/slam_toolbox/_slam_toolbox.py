@@ -27,11 +27,11 @@ from daidalos.nodes.conversions import (
     transform_stamped,
 )
 from daidalos.nodes.managed import ManagedNode
-from daidalos.nodes.parameters import declare
+from daidalos.nodes.parameters import declare, declare_without_effect
 from daidalos.nodes.qos import LATCHED
+from daidalos.nodes.scan_reports import LATE_NS, ScanReports
 from daidalos.nodes.slam_toolbox._graph_markers import MovableScans, graph_markers
-from daidalos.nodes.slam_toolbox._parameters import SlamToolboxParameters, declare_without_effect
-from daidalos.nodes.slam_toolbox._scan_reports import LATE_NS, ScanReports
+from daidalos.nodes.slam_toolbox._parameters import WITHOUT_EFFECT, SlamToolboxParameters
 from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import nanoseconds, time_message
 
@@ -64,14 +64,14 @@ class SlamToolbox(ManagedNode):
 
         is_managed = "use_lifecycle_manager" in self._parameter_overrides
         self._settings = p = declare(self, self.kind, reconfigure=self._reconfigure)
-        declare_without_effect(self)
+        declare_without_effect(self, WITHOUT_EFFECT)
         for name in ("paused_new_measurements", "paused_processing", "interactive_mode"):
             self.declare_parameter(name, value=False)
         self._apply_logging()
         self._slam: Any = None
         self._saved: Any = None
         self._lock = threading.Lock()
-        self._reports = ScanReports(self.get_logger())
+        self._reports = ScanReports(self)
         self._waiting: deque[tuple[int, Any]] = deque(maxlen=None if self.keeps_every_scan else p.scan_queue_size)
         self._current: tuple[int, Any] | None = None
         self._timers_of_activity: list[Any] = []
