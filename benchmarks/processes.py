@@ -20,7 +20,7 @@ def start(module: str, role: str, *arguments: str) -> subprocess.Popen[str]:
 
 @contextmanager
 def running(module: str, role: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """Have a role meanwhile that has said that it is ready; it ends when its input does."""
+    """Run a role that has reported that it is ready; it ends when its input does."""
     process = start(module, role, *arguments)
     try:
         assert process.stdout is not None
@@ -39,12 +39,12 @@ def result(process: subprocess.Popen[str]) -> dict[str, Any]:
 
 
 def report(**values: Any) -> None:
-    """Tell what a role measured."""
+    """Print what a role measured."""
     print(json.dumps(values), flush=True)
 
 
 def say_ready() -> None:
-    """Tell that a role is ready."""
+    """Report that a role is ready."""
     print(READY, flush=True)
 
 

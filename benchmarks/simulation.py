@@ -78,7 +78,7 @@ def arena() -> Simulation:
 
 
 def with_boxes(simulation: Simulation, count: int) -> Simulation:
-    """Let a wall of boxes stand in the room, where cameras see it."""
+    """Place a wall of boxes in the room, where cameras see it."""
     box = "<geometry><box><size>0.1 0.1 0.1</size></box></geometry>"
     shape = f"<collision name='c'>{box}</collision><visual name='v'>{box}</visual>"
     inertia = "<inertia><ixx>1e-3</ixx><iyy>1e-3</iyy><izz>1e-3</izz></inertia>"

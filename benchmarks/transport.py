@@ -160,7 +160,7 @@ def measure_images() -> dict[str, float]:
 
 @contextmanager
 def session() -> Iterator[tuple[Session, Any]]:
-    """Give a session and a node."""
+    """Return a session and a node."""
     made = Session(make_backend(read_environment()))
     node, remove = made.create_node(f"bench{os.getpid()}", "/")
     try:
@@ -257,7 +257,7 @@ def echo() -> None:
 
 
 def crowd() -> None:
-    """Be many nodes with many topics."""
+    """Create many nodes with many topics."""
     with session() as (ours, _):
         nodes = [ours.create_node(f"node{number}", "/") for number in range(NODES)]
         kept = [

@@ -108,7 +108,7 @@ class Terminal:
         return self._wait_for(re.compile(pattern), timeout_s, repr(pattern)).group()
 
     def ended(self) -> bool:
-        """Tell whether the command that was started has ended."""
+        """Return whether the command that was started has ended."""
         with self._changed:
             return re.search(rf"@@end {self._count} \d+\n", self._text[self._begin :]) is not None
 

@@ -129,7 +129,7 @@ class Chromium:
         self._run(self._load("Page.reload"))
 
     def resize(self, width: int, height: int) -> None:
-        """Give the page another size."""
+        """Set the page's size."""
         self._size = (width, height)
         self._run(self._set_size())
 

@@ -57,7 +57,7 @@ def alone(
 
 
 def cycle(controller: Controller, now_ns: int, period_ns: int = PERIOD_NS) -> list[Any]:
-    """Let a controller run once."""
+    """Run one cycle of a controller."""
     controller.now_ns = now_ns
     if not controller.chained:
         controller.take_references(now_ns, period_ns * 1e-9)

@@ -45,12 +45,12 @@ PACKAGES = built_in().packages()
 
 @st.composite
 def messages(draw: st.DrawFn, kind: type[Message]) -> Message:
-    """Give a message of a class with any values."""
+    """Return a strategy for messages of a class with any values."""
     return kind(**{name: draw(values(*rest)) for name, *rest in kind._FIELDS})
 
 
 def values(base: Any, many: str, size: int, bound: int | None) -> st.SearchStrategy[Any]:
-    """Give what a field may hold."""
+    """Return a strategy for what a field may hold."""
     one = single(base, bound)
     if many == "single":
         return one

@@ -10,7 +10,7 @@ from daidalos.nodes.asset_folders import is_asset_readable, record_model_path, r
 
 @pytest.fixture(autouse=True)
 def environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Give the test a runtime folder, a home and no packages but ours."""
+    """Set a runtime folder, a home and no packages but ours."""
     runtime = tmp_path / "runtime"
     runtime.mkdir(mode=0o700)
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(runtime))

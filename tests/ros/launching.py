@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture(autouse=True)
 def sandbox(tmp_path, monkeypatch):
-    """Give each test its own log files and environment."""
+    """Isolate log files and environment of each test."""
     import launch._process  # before a test puts another module of executables in its place
     import launch.logging
 

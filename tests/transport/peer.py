@@ -41,7 +41,7 @@ def flood(session: Session) -> None:
 
 
 def listen(session: Session) -> None:
-    """Say what is heard."""
+    """Print what is heard."""
     node, _remove = session.create_node("listener", "/")
     news = threading.Event()
     subscription = session.create_subscription(node, "/topic", Int32, Qos(), news.set)
@@ -88,7 +88,7 @@ def serve(session: Session) -> None:
 
 
 def watch(session: Session) -> None:
-    """Say which publishers of the topic come and go."""
+    """Print which publishers of the topic come and go."""
     stop = session.watch(
         "/topic",
         lambda added, who: (
@@ -101,7 +101,7 @@ def watch(session: Session) -> None:
 
 
 def crowd(session: Session) -> None:
-    """Be many nodes with many topics."""
+    """Create many nodes with many topics."""
     nodes = [session.create_node(f"node{number}", "/crowd") for number in range(200)]
     publishers = [
         session.create_publisher(nodes[number % 200][0], "/topic" if number == 7 else f"/topic{number}", Int32, Qos())

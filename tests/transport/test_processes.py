@@ -26,7 +26,7 @@ SHORT_LEASE = "<CycloneDDS><Domain><Discovery><LeaseDuration>1s</LeaseDuration><
 
 @pytest.fixture(autouse=True)
 def _environment(middleware: str, domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the peers join us; DDS learns of a death when a lease runs out, here soon."""
+    """Join the peers; DDS learns of a death when a lease runs out, here soon."""
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     monkeypatch.setenv("RMW_IMPLEMENTATION", middleware)
     monkeypatch.setenv("CYCLONEDDS_URI", SHORT_LEASE)

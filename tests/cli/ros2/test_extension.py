@@ -40,7 +40,7 @@ from ros2launch.option import OptionExtension
 
 
 class NoiseOption(OptionExtension):
-    """Say when a launch begins and ends."""
+    """Print when a launch begins and ends."""
 
     def add_arguments(self, parser, cli_name, *, argv=None):
         parser.add_argument("--noise")

@@ -22,7 +22,7 @@ PERIOD = 0.1
 
 
 def run(behavior, command, costmap, pose=(0.0, 0.0, 0.3), limit=30.0):
-    """Let a behaviour drive until it is done; returns the last pose, the time and the velocities."""
+    """Run a behaviour until it is done; return the last pose, the time and the velocities."""
     pose, velocity, now, velocities = np.array(pose, dtype=float), np.zeros(3), 0.0, []
     behavior.start(command, pose, now)
     while now < limit:

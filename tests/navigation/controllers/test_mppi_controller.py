@@ -14,7 +14,7 @@ ROBOT = Footprint.circle(0.2)
 
 
 def drive(path, costmap, cycles=120, **more):
-    """Let a perfect robot follow; returns its poses and velocities."""
+    """Simulate a perfect robot that follows; return its poses and velocities."""
     controller = MppiController(MppiParameters(**more), NavigationContext(footprint=ROBOT))
     pose, velocity, poses, velocities = np.zeros(3), np.zeros(3), [], []
     for _ in range(cycles):

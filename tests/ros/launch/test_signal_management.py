@@ -23,7 +23,7 @@ def loop():
 
 @pytest.fixture
 def nobody_told():
-    """Let nobody be told of signals, whatever was run before in this process."""
+    """Remove handlers of signals that earlier tests of this process have left."""
     before = signal.set_wakeup_fd(-1)
     yield
     signal.set_wakeup_fd(before)

@@ -9,5 +9,5 @@ __all__ = ["no_plugins", "sandbox"]
 
 @pytest.fixture(autouse=True)
 def no_plugins(sandbox, monkeypatch):
-    """Let pytest find no plugins by itself in the runs that a test makes."""
+    """Turn off the search for plugins in the runs of pytest that a test makes."""
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")

@@ -39,7 +39,7 @@ def context():
 
 @pytest.fixture
 def show_arguments(monkeypatch):
-    """Let every executable be a program that prints its arguments."""
+    """Replace every executable by a program that prints its arguments."""
     module = types.ModuleType("daidalos.workspaces.executables")
 
     def find_executable(package, executable):

@@ -70,7 +70,7 @@ except KeyboardInterrupt:
 
 @pytest.fixture(autouse=True)
 def programs(monkeypatch, domain):
-    """Let executables be the programs above, in a ROS domain of their own."""
+    """Replace executables by the programs above, in a ROS domain of their own."""
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     module = types.ModuleType("daidalos.workspaces.executables")
     texts = {"managed": MANAGED, "container": CONTAINER}

@@ -34,7 +34,7 @@ def two_links(kind, axis="<axis><xyz>0 0 1</xyz></axis>", extra=""):
 
 
 def push(simulation, dof, speed=1.0):
-    """Give one degree of freedom a speed and return where b is after a tenth of a second."""
+    """Set the speed of one degree of freedom and return where b is after a tenth of a second."""
     simulation.physics.data.qvel[dof] = speed
     simulation.advance(SECOND // 10)
     return simulation.pose("m", "b")

@@ -84,7 +84,7 @@ def call(participant: DomainParticipant) -> None:
 
 
 def nodes(participant: DomainParticipant) -> None:
-    """Say what processes tell of their nodes."""
+    """Print what processes announce of their nodes."""
     kept = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.TransientLocal)
     reader = DataReader(participant, Topic(participant, "ros_discovery_info", Info), kept)
     say("ready")

@@ -140,7 +140,7 @@ class Partner:
         return self.numbers
 
     def talk(self, numbers: range) -> None:
-        """Say numbers as soon as somebody listens."""
+        """Publish numbers as soon as somebody listens."""
         publisher = self.node.create_publisher(String, "/chatter", QoSProfile(depth=1000))
         assert self.node.handle.graph.wait_for(lambda: publisher.get_subscription_count() > 0, TIMEOUT_S)
         for number in numbers:

@@ -32,7 +32,7 @@ def layer_of(**source):
 
 
 def see(layer, costmap, ends, hits=True, stamp=0.0, now=None):
-    """Let a layer see rays from (1, 1), and return the costmap that it makes of free ground."""
+    """Feed a layer with rays from (1, 1), and return the costmap that it makes of free ground."""
     ends = np.atleast_2d(np.array(ends, dtype=float))
     hits = np.broadcast_to(hits, ends.shape[:1]).copy()
     layer.add_observation(Observation(HERE[:2], ends, hits, stamp))
