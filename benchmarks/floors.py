@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -22,15 +24,17 @@ WARM = 300
 STREAM_S = 2.0
 SMALL = b"x" * 69
 SETTLE_S = 0.5
+UNIX_LINK, TCP_LINK = "unixsock-stream", "tcp"
 
 
-def zenoh_latency(role: str) -> tuple[float, float]:
+def zenoh_latency(role: str, link: str = UNIX_LINK) -> tuple[float, float]:
     """Return the median and the 99th percentile, in us, of what goes to another process and back over zenoh.
 
-    `role` is ``zenoh_ping`` for two topics or ``zenoh_call`` for a query and its reply.
+    `role` is ``zenoh_ping`` for two topics or ``zenoh_call`` for a query and its reply; for `link`, see
+    `link_endpoint`.
     """
-    with TemporaryDirectory(prefix="dd") as folder, running("floors", "zenoh_echo", folder):
-        return middle_and_tail_us(result(start("floors", role, folder))["times"])
+    with link_endpoint(link) as endpoint, running("floors", "zenoh_echo", endpoint):
+        return middle_and_tail_us(result(start("floors", role, endpoint))["times"])
 
 
 def dds_latency() -> tuple[float, float]:
@@ -39,25 +43,38 @@ def dds_latency() -> tuple[float, float]:
         return middle_and_tail_us(result(start("floors", "dds_ping"))["times"])
 
 
-def zenoh_stream(size: int) -> float:
+def zenoh_stream(size: int, link: str = UNIX_LINK) -> float:
     """Return how many payloads a second another process gets over zenoh, and copies, without loss."""
-    with TemporaryDirectory(prefix="dd") as folder, running("floors", "zenoh_count", folder) as receiver:
-        result(start("floors", "zenoh_flood", folder, str(size)))
+    with link_endpoint(link) as endpoint, running("floors", "zenoh_count", endpoint) as receiver:
+        result(start("floors", "zenoh_flood", endpoint, str(size)))
         received = result(receiver)
     return float(received["count"] / received["seconds"])
+
+
+@contextmanager
+def link_endpoint(link: str) -> Iterator[str]:
+    """Yield an endpoint of zenoh on this machine: a socket file for `UNIX_LINK`, a port of loopback for `TCP_LINK`."""
+    if link == UNIX_LINK:
+        with TemporaryDirectory(prefix="dd") as folder:
+            yield f"{link}/{Path(folder) / 'z'}"
+    else:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        yield f"{link}/127.0.0.1:{port}"
 
 
 # Roles.
 
 
-def _session(folder: str, how: str) -> Any:
+def _session(endpoint: str, how: str) -> Any:
     import zenoh
 
     config = zenoh.Config()
     settings = {
         "mode": "peer",
         "listen/endpoints": [],
-        f"{how}/endpoints": [f"unixsock-stream/{Path(folder) / 'z'}"],
+        f"{how}/endpoints": [endpoint],
         "scouting/multicast/enabled": False,
         "transport/shared_memory/enabled": True,
     }
@@ -78,8 +95,8 @@ def _direct(function: Callable[[Any], None]) -> Any:
     return Callback(function, indirect=False)
 
 
-def zenoh_echo(folder: str) -> None:
-    with _session(folder, "listen") as session:
+def zenoh_echo(endpoint: str) -> None:
+    with _session(endpoint, "listen") as session:
         pong = _publisher(session, "pong")
 
         def reply(query: Any) -> None:
@@ -95,16 +112,16 @@ def zenoh_echo(folder: str) -> None:
         assert kept
 
 
-def zenoh_ping(folder: str) -> None:
-    with _session(folder, "connect") as session:
+def zenoh_ping(endpoint: str) -> None:
+    with _session(endpoint, "connect") as session:
         answered, ping = _Gate(), _publisher(session, "ping")
         kept = session.declare_subscriber("pong", _direct(answered.open))
         _repeat(lambda: ping.put(SMALL), answered)
         assert kept
 
 
-def zenoh_call(folder: str) -> None:
-    with _session(folder, "connect") as session:
+def zenoh_call(endpoint: str) -> None:
+    with _session(endpoint, "connect") as session:
         answered, querier = _Gate(), session.declare_querier("call")
         on_reply = _direct(answered.open)
         _repeat(lambda: querier.get(on_reply, payload=SMALL), answered)
@@ -136,7 +153,7 @@ def _repeat(send: Callable[[], Any], answered: _Gate) -> None:
     report(times=times[WARM:])
 
 
-def zenoh_count(folder: str) -> None:
+def zenoh_count(endpoint: str) -> None:
     count, first, last = 0, 0.0, 0.0
 
     def receive(sample: Any) -> None:
@@ -146,7 +163,7 @@ def zenoh_count(folder: str) -> None:
         first = first or last
         count += 1
 
-    with _session(folder, "listen") as session:
+    with _session(endpoint, "listen") as session:
         kept = session.declare_subscriber("stream", _direct(receive))
         say_ready()
         sys.stdin.read()
@@ -154,8 +171,8 @@ def zenoh_count(folder: str) -> None:
     report(count=count, seconds=max(last - first, 1e-9))
 
 
-def zenoh_flood(folder: str, size: str) -> None:
-    with _session(folder, "connect") as session:
+def zenoh_flood(endpoint: str, size: str) -> None:
+    with _session(endpoint, "connect") as session:
         publisher, data = _publisher(session, "stream"), os.urandom(int(size))
         time.sleep(SETTLE_S)
         end = time.perf_counter() + STREAM_S
