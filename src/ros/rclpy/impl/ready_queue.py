@@ -33,6 +33,7 @@ class ReadyQueue:
         self._tidy_at = _TIDY
         self._count = itertools.count().__next__
         self._waiting_thread: int | None = None
+        self._notifying_thread: int | None = None
 
     def empty(self) -> bool:
         """Return whether nothing waits to be taken."""
@@ -41,7 +42,8 @@ class ReadyQueue:
     def put(self, item: Any) -> None:
         """Add an item, and wake who waits."""
         self._items.append(item)
-        if self._gate.locked():
+        # What `get` itself adds, for timers that are due, it finds without being woken.
+        if self._gate.locked() and self._notifying_thread != threading.get_ident():
             self._open()
 
     def put_first(self, item: Any) -> None:
@@ -75,11 +77,15 @@ class ReadyQueue:
             When the deadline came first.
         """
         items, first, timers, now = self._items, self._first, self._timers, time.monotonic_ns
-        self._waiting_thread = threading.get_ident()
+        thread = self._waiting_thread = threading.get_ident()
         while True:
             until = deadline_ns
             if timers:
-                until = self._notify_timers(until)
+                self._notifying_thread = thread
+                try:
+                    until = self._notify_timers(until)
+                finally:
+                    self._notifying_thread = None
             if first and not (items and self._was_first):
                 self._was_first = True
                 return first.popleft()
