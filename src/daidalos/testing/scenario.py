@@ -212,7 +212,7 @@ class Scenario:
         bag = self.folder / "bag"
         left_out = [] if pictures else ["--exclude-topic-types", *PICTURES]
         command = ["ros2", "bag", "record", "--all-topics", "--log-level", "warn", "--output", str(bag), *left_out]
-        self._recorder = self.start_program(command, on_output=_show_errors)
+        self._recorder = self.start_program(command, on_output=_error_filter())
         return bag
 
     def end(self) -> None:
@@ -230,8 +230,13 @@ class Scenario:
             ended.wait(_END_S)
 
 
-def _show_errors(fd: int, data: bytes) -> None:
-    """Pass on what a recorder complains of."""
-    for line in data.decode(errors="replace").splitlines():
-        if line.startswith(("[ERROR]", "[FATAL]", "error")):
-            sys.stderr.write(f"{line}\n")
+def _error_filter() -> Callable[[int, bytes], None]:
+    """Return a function that passes on what a recorder complains of."""
+    errors = sys.stderr  # that of the test; the recorder has one of its own
+
+    def show(fd: int, data: bytes) -> None:
+        for line in data.decode(errors="replace").splitlines():
+            if line.startswith(("[ERROR]", "[FATAL]", "error")):
+                errors.write(f"{line}\n")
+
+    return show
