@@ -364,10 +364,9 @@ class Layer(NavigationExtension):
         """Topics that the layer subscribes to."""
         return ()
 
-    @property
-    def is_current(self) -> bool:
-        """Whether the layer has received all its inputs recently enough."""
-        return True
+    def missing_input(self, now: float) -> str:
+        """Return what the layer lacks at a time [s] to know the present, in words; empty where it lacks nothing."""
+        return ""
 
     @property
     def extent(self) -> Costmap | None:

@@ -15,9 +15,11 @@ from nav2_msgs.msg import Costmap
 from nav_msgs.msg import Path
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import LaserScan
 
 from daidalos.nodes.conversions import path_message
 from daidalos.nodes.nav2_controller.controller_server import ControllerServer
+from daidalos.samples.fields import time_message
 from nodes.stepped import LATCHED, Stage
 
 pytestmark = [pytest.mark.usefixtures("compiled"), pytest.mark.timeout(300)]
@@ -291,3 +293,93 @@ def test_without_a_transform_the_goal_ends_with_the_reason(stage: Callable[[dict
     status, result = bench.drive(straight(1.0))
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, FollowPath.Result.TF_ERROR)
     assert "no transform from chassis to odom" in result.error_msg
+
+
+class Laser:
+    """A laser that sees nothing in its range, of which each step brings a scan."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.delay = 0.0
+        self.is_on = True
+        self.last_place = 0.0
+        self._stage, self._robot = bench.stage, bench.robot
+        self._scans = bench.stage.node.create_publisher(LaserScan, "/scan", 10)
+        self._move, bench.robot.step = bench.robot.step, self._step  # type: ignore[method-assign]
+
+    def _step(self, seconds: float, stamp: Any) -> None:
+        self._move(seconds, stamp)
+        if self.is_on:
+            scan = LaserScan(angle_max=6.2, angle_increment=0.1, range_max=10.0, ranges=[math.inf] * 63)
+            scan.header.frame_id = "base_link"
+            scan.header.stamp = time_message(round(1e9 * (self._stage.now - self.delay)))
+            self._scans.publish(scan)
+            self.last_place = float(self._robot.pose[0])
+
+
+SEEING = changed(COSTMAP, plugins=["obstacle_layer", "inflation_layer"])
+
+
+def test_the_robot_stops_when_scans_stop(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    """Half a second and one cycle later it stands, and waits before it gives up."""
+    bench = Bench(stage({**SEEING, "/controller_server": {
+        **PARAMETERS["/controller_server"], "costmap_update_timeout": 1.0}}))  # fmt: skip
+    laser = Laser(bench)
+    bench.start()
+    handle = bench.drive_until_moving(straight(5.0))
+    bench.stage.step_for(0.5)
+    laser.is_on = False
+    silent_since = bench.stage.now
+    bench.stage.step_until(lambda: bench.robot.is_standing)
+    assert bench.stage.now - silent_since == pytest.approx(0.55, abs=0.1)
+    assert bench.robot.pose[0] - laser.last_place < 0.3
+    status, result = bench.stage.end(handle)
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, FollowPath.Result.CONTROLLER_TIMED_OUT)
+    assert "'scan' is" in result.error_msg
+    assert "expected_update_rate 0.5 s" in result.error_msg
+    assert bench.stage.now - silent_since > 1.5
+    assert bench.robot.pose[0] - laser.last_place < 0.3
+
+
+def test_the_robot_goes_on_when_scans_come_again(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    bench = Bench(stage({**SEEING, "/controller_server": {
+        **PARAMETERS["/controller_server"], "costmap_update_timeout": 5.0}}))  # fmt: skip
+    laser = Laser(bench)
+    bench.start()
+    handle = bench.drive_until_moving(straight(2.0))
+    laser.is_on = False
+    bench.stage.step_until(lambda: bench.robot.is_standing)
+    bench.stage.step_for(1.0)
+    laser.is_on = True
+    assert bench.stage.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
+    assert bench.robot.pose[0] == pytest.approx(2.0, abs=0.3)
+
+
+def test_late_scans_do_not_count(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    bench = Bench(stage(SEEING))
+    laser = Laser(bench)
+    bench.start()
+    handle = bench.drive_until_moving(straight(5.0))
+    bench.stage.step_for(0.5)
+    laser.delay = 1.0
+    place = float(bench.robot.pose[0])
+    status, result = bench.stage.end(handle)
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, FollowPath.Result.CONTROLLER_TIMED_OUT)
+    bench.stage.step_until(lambda: bench.robot.is_standing)
+    assert bench.robot.pose[0] - place < 0.3
+
+
+@pytest.mark.parametrize("lost", ["map", "odom"])
+def test_the_robot_stops_when_nobody_says_where_it_is(bench: Bench, lost: str) -> None:
+    """Neither localization, which places the path, nor odometry may be older than the tolerance."""
+    handle = bench.drive_until_moving(straight(5.0, "map"))
+    bench.stage.step_for(0.5)
+    place = float(bench.robot.pose[0])
+    if lost == "map":
+        bench.robot.is_localized = False
+    else:
+        bench.robot._transforms.publish = lambda message: None  # type: ignore[method-assign]
+    status, result = bench.stage.end(handle)
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, FollowPath.Result.TF_ERROR)
+    assert "longer than transform_tolerance 0.3 s" in result.error_msg
+    bench.stage.step_until(lambda: bench.robot.is_standing)
+    assert bench.robot.pose[0] - place < 0.3

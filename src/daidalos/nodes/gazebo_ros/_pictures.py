@@ -12,7 +12,7 @@ _FORGET_NS = 1_000_000_000
 
 
 class PictureBudget:
-    """Decides which pictures are drawn while a simulation is late: cameras take turns, the longest waiting first.
+    """Choice of the pictures that are drawn while a simulation is late: cameras take turns, the longest waiting first.
 
     Parameters
     ----------

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
-from rclpy.time import Time
-from tf2_ros import TransformException
 
 from daidalos.common.extensions import Kind
 from daidalos.common.parameters import Parameters, parameter
@@ -16,10 +14,10 @@ from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import CONTROLLERS, GOAL_CHECKERS, PROGRESS_CHECKERS
 from daidalos.nodes.action_results import TransformFailed
-from daidalos.nodes.conversions import path_array, path_message, pose2_of_transform, twist_message
+from daidalos.nodes.conversions import path_array, path_message, twist_message
 from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ContainedNode, ManagedNode
-from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
+from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode, CostmapOutdated
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
 
@@ -48,7 +46,9 @@ class ControllerServerParameters(Parameters):
     failure_tolerance: float = parameter(
         0.3, "How long a controller may fail before the goal is aborted; negative for ever.", unit="s"
     )
-    costmap_update_timeout: float = parameter(0.3, "How long to wait for the costmap.", unit="s", minimum=0.0)
+    costmap_update_timeout: float = parameter(
+        0.3, "How long to wait for the costmap and for transforms.", unit="s", minimum=0.0
+    )
     odom_topic: str = parameter("odom", "Topic of the odometry.", not_empty=True, read_only=True)
     enable_stamped_cmd_vel: bool = parameter(False, "Whether cmd_vel is stamped.", read_only=True)
     controller_plugins: tuple[str, ...] = parameter(
@@ -75,6 +75,7 @@ class ControllerServer(ManagedNode):
         self._velocity = np.zeros(3)
         self._current: Any = None
         self._pursuit: _Pursuit | None = None
+        self._waiting_since: float | None = None
 
     def _reconfigure(self, parameters: ControllerServerParameters) -> None:
         """Use another tolerance and timeout from the next goal on."""
@@ -118,12 +119,13 @@ class ControllerServer(ManagedNode):
 
         result = FollowPathAction.Result()
         self._current = goal_handle
+        self._waiting_since = None
         try:
             await self._costmap.until_current(self, self._settings.costmap_update_timeout)
             if self._goes_on(goal_handle):
                 self._pursuit = self._take_up(goal_handle.request)
             with Cycle(self, self._settings.controller_frequency) as cycle:
-                while self._goes_on(goal_handle) and self._drive(goal_handle):
+                while self._goes_on(goal_handle) and self._drive_or_wait(goal_handle):
                     await cycle.next()
             replaced = self._current is not goal_handle
         finally:
@@ -169,12 +171,33 @@ class ControllerServer(ManagedNode):
             raise UnknownController(f"there is no '{name}' among {group}: {', '.join(plugins)}")
         return found
 
+    def _drive_or_wait(self, goal_handle: Any) -> bool:
+        """Make one cycle, in which the robot stands where its data are too old; False when the goal is reached.
+
+        Raises
+        ------
+        CostmapOutdated, TransformFailed
+            They have been too old for ``costmap_update_timeout``.
+        """
+        now = self.get_clock().now().nanoseconds * 1e-9
+        try:
+            self._costmap.require_current()
+            goes_on = self._drive(goal_handle)
+        except (CostmapOutdated, TransformFailed) as problem:
+            self._publish_velocity(np.zeros(3))
+            self._waiting_since = now if self._waiting_since is None else min(self._waiting_since, now)
+            if now - self._waiting_since >= self._settings.costmap_update_timeout:
+                raise
+            self.get_logger().warning(f"the robot waits: {problem}", throttle_duration_sec=1.0)
+            return True
+        self._waiting_since = None
+        return goes_on
+
     def _drive(self, goal_handle: Any) -> bool:
         """Make one cycle; False when the goal is reached."""
         assert self._pursuit is not None
-        pose = self._costmap.robot_pose()
-        if pose is None:
-            raise TransformFailed(self._costmap.pose_problem)
+        pose = self._costmap.pose_of(self._costmap.base_frame)
+        plan_frame = self._costmap.pose_of(self._pursuit.frame)
         with self._costmap.lock:
             layered = self._costmap.layered
             assert layered is not None
@@ -183,22 +206,12 @@ class ControllerServer(ManagedNode):
                 self._velocity,
                 layered.costmap,
                 self.get_clock().now().nanoseconds * 1e-9,
-                plan_frame=self._pose_of_frame(self._pursuit.frame),
+                plan_frame=plan_frame,
                 circumscribed_cost=layered.circumscribed_cost(self._costmap.footprint),
             )
         self._publish_velocity(step.velocity)
         self._tell(goal_handle, step)
         return not step.done
-
-    def _pose_of_frame(self, frame: str) -> Any:
-        """Return the pose of a frame in the costmap's."""
-        if frame == self._costmap.global_frame:
-            return np.zeros(3)
-        try:
-            found = self._costmap.buffer.lookup_transform(self._costmap.global_frame, frame, Time())
-        except TransformException as error:
-            raise TransformFailed(str(error)) from None
-        return pose2_of_transform(found.transform)
 
     def _tell(self, goal_handle: Any, step: Any) -> None:
         from nav2_msgs.action import FollowPath as FollowPathAction

@@ -6,6 +6,7 @@ import threading
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
@@ -20,6 +21,7 @@ from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
+from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import COSTMAP_LAYERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import (
@@ -77,6 +79,12 @@ class CostmapNodeParameters(CostmapParameters):
 
 class CostmapTimedOut(TransformFailed):
     """Sensors, maps and transforms were waited for in vain."""
+
+
+class CostmapOutdated(NavigationError):
+    """The costmap no longer shows what is around the robot."""
+
+    code = "CONTROLLER_TIMED_OUT"
 
 
 class CostmapNode(ManagedNode):
@@ -218,19 +226,46 @@ class CostmapNode(ManagedNode):
         None while it is not known, or older than ``transform_tolerance``.
         """
         try:
-            found = self.buffer.lookup_transform(self.global_frame, self.base_frame, Time())
-        except TransformException:
-            self.pose_problem = f"there is no transform from {self.base_frame} to {self.global_frame}"
+            return self.pose_of(self.base_frame)
+        except TransformFailed as problem:
+            self.pose_problem = str(problem)
             return None
+
+    def pose_of(self, frame: str) -> Any:
+        """Return the latest pose (x, y, yaw) of a frame in the costmap's frame.
+
+        Raises
+        ------
+        TransformFailed
+            It is not known, or older than ``transform_tolerance``.
+        """
+        if frame == self.global_frame:
+            return np.zeros(3)
+        try:
+            found = self.buffer.lookup_transform(self.global_frame, frame, Time())
+        except TransformException as error:
+            reason = "" if frame == self.base_frame else f": {error}"
+            raise TransformFailed(f"there is no transform from {frame} to {self.global_frame}{reason}") from None
         stamp_ns = nanoseconds(found.header.stamp)
         age = (self.get_clock().now().nanoseconds - stamp_ns) * 1e-9
         if stamp_ns and age > self._settings.transform_tolerance:  # static transforms have no time
-            self.pose_problem = (
-                f"the transform from {self.base_frame} to {self.global_frame} is {age:.3g} s old, "
+            raise TransformFailed(
+                f"the transform from {frame} to {self.global_frame} is {age:.3g} s old, "
                 f"longer than transform_tolerance {self._settings.transform_tolerance:g} s"
             )
-            return None
         return pose2_of_transform(found.transform)
+
+    def require_current(self) -> None:
+        """Check that the costmap shows what is around the robot.
+
+        Raises
+        ------
+        CostmapOutdated
+            A layer lacks an input.
+        """
+        missing = self._missing_input()
+        if missing:
+            raise CostmapOutdated(f"the {self.get_name()} is out of date: {missing}")
 
     async def until_current(self, node: Node, limit_s: float) -> None:
         """Wait until the map and the robot's place on it are known.
@@ -254,16 +289,19 @@ class CostmapNode(ManagedNode):
             raise CostmapTimedOut(f"the {self.get_name()} is not known yet: {self._missing_inputs()}")
 
     def _is_current(self) -> bool:
-        return self._updates > 0 and self._has_maps()
+        return self._updates > 0 and not self._missing_input()
 
-    def _has_maps(self) -> bool:
-        layers = self.layered.layers if self.layered is not None else []
-        return all(layer.is_current for layer in layers)
+    def _missing_input(self) -> str:
+        """Return what the first layer that lacks an input lacks, in words."""
+        now = self.get_clock().now().nanoseconds * 1e-9
+        with self.lock:
+            layers = self.layered.layers if self.layered is not None else ()
+            return next((missing for layer in layers if (missing := layer.missing_input(now))), "")
 
     def _missing_inputs(self) -> str:
         if self.robot_pose() is None:
             return self.pose_problem
-        return "there is no map" if not self._has_maps() else "it was not yet updated"
+        return self._missing_input() or "it was not yet updated"
 
     _updates = 0
     pose_problem = ""

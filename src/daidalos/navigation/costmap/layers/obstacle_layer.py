@@ -30,8 +30,9 @@ from daidalos.navigation.costmap.footprint import fill_polygon
 class ObservationSource(Parameters):
     """Parameters of one sensor, by their Nav2 names.
 
-    `inf_is_valid` is on by default, other than in Nav2: a ray that met nothing shows that its way is free,
-    and obstacles that have gone stay in the costmap for ever without it. `topic` is the source's name where empty.
+    Two defaults differ from Nav2's. `inf_is_valid` is on: a ray that met nothing shows that its way is free, and
+    obstacles that have gone stay in the costmap for ever without it. `expected_update_rate` is half a second instead of
+    no limit: without it the robot drives on when a sensor fails. `topic` is the source's name where empty.
     """
 
     obstacle_max_range: float = parameter(2.5, "Range up to which obstacles are marked.", unit="m", minimum=0.0)
@@ -40,6 +41,12 @@ class ObservationSource(Parameters):
     raytrace_min_range: float = parameter(0.0, "Range from which cells are cleared.", unit="m", minimum=0.0)
     observation_persistence: float = parameter(
         0.0, "How long an observation is kept; 0 keeps the latest alone.", unit="s", minimum=0.0
+    )
+    expected_update_rate: float = parameter(
+        0.5,
+        "Age of the latest observation from which the costmap is out of date; 0 for no limit.",
+        unit="s",
+        minimum=0.0,
     )
     marking: bool = parameter(True, "Whether obstacles are marked.")
     clearing: bool = parameter(True, "Whether cells before obstacles are cleared.")
@@ -125,6 +132,7 @@ class ObstacleLayer(Layer):
         self._seen: Costmap | None = None
         self._buffers: dict[str, list[Observation]] = {name: [] for name in self.parameters.sources}
         self._under_robot: Array | None = None
+        self._latest: dict[str, float] = {}
 
     def add_observation(self, observation: Observation, source: str = "scan") -> None:
         """Add a measurement of one of the sources, to be used at the next update.
@@ -135,6 +143,7 @@ class ObstacleLayer(Layer):
             There is no source of that name.
         """
         self._buffers[source].append(observation)
+        self._latest[source] = observation.stamp
 
     @property
     def inputs(self) -> tuple[Input, ...]:
@@ -148,6 +157,22 @@ class ObstacleLayer(Layer):
         """Take a scan of one of the sources; see `Observation.from_scan`."""
         inf_is_valid = self.parameters.sources[source].inf_is_valid
         self.add_observation(Observation.from_scan(scan, base_pose, stamp, inf_is_valid=inf_is_valid), source)
+
+    def missing_input(self, now: float) -> str:
+        """Return which sensor has observed nothing for its `expected_update_rate`."""
+        for name, source in self.parameters.sources.items():
+            limit = source.expected_update_rate
+            if limit <= 0.0:
+                continue
+            if name not in self._latest:
+                return f"there is no observation of '{source.topic or name}'"
+            age = now - self._latest[name]
+            if not -limit <= age <= limit:  # from the future where time was set back
+                return (
+                    f"the latest observation of '{source.topic or name}' is {age:.3g} s old, "
+                    f"longer than expected_update_rate {limit:g} s"
+                )
+        return ""
 
     def match_size(self, costmap: Costmap) -> None:
         """Keep the observations that are still inside of the costmap."""

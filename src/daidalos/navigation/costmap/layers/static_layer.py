@@ -48,10 +48,9 @@ class StaticLayer(Layer):
         """Implement `Layer.inputs`."""
         return (Input(self.parameters.map_topic, OccupancyGrid, self.set_map),)
 
-    @property
-    def is_current(self) -> bool:
-        """Return whether a map has come."""
-        return self._map is not None
+    def missing_input(self, now: float) -> str:
+        """Return that there is no map until one has come."""
+        return "" if self._map is not None else "there is no map"
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Set the map; only differences to the last one are updated.
