@@ -1,4 +1,4 @@
-"""How fast navigation and localization are, and how well a robot drives: the time of the parts, an arena, BARN."""
+"""How fast navigation is, and how well a robot drives: the time of the parts, an arena, BARN."""
 
 from __future__ import annotations
 
@@ -14,8 +14,6 @@ from typing import Any
 import numpy as np
 
 from daidalos.common.kernels import warm_up
-from daidalos.localization.amcl import Amcl
-from daidalos.localization.config import AmclConfig
 from daidalos.navigation.contracts import ControlInput, NavigationContext
 from daidalos.navigation.controllers.mppi_controller import MppiController
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
@@ -28,9 +26,8 @@ from daidalos.navigation.paths import path_length
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from tests.localization.wandering import Wanderer, map_of
 from tests.navigation.closed_loop import free_pose, jackal, turtlebot
-from tests.navigation.flat_world import FlatRobot, FlatWorld, arena, barn_world
+from tests.navigation.flat_world import FlatWorld, arena, barn_world
 
 DATA = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[2] / "shared" / "data")) / "barn"
 ROBOT = Footprint.circle(0.22)
@@ -40,9 +37,8 @@ def run() -> dict[str, float | str]:
     """Measure everything; times are medians."""
     start = time.perf_counter()
     warm_up("daidalos.navigation")
-    warm_up("daidalos.localization")
     results: dict[str, float | str] = {"navigation.warm_up_s": time.perf_counter() - start}
-    results |= measure_planner() | measure_costmaps() | measure_controllers() | measure_amcl()
+    results |= measure_planner() | measure_costmaps() | measure_controllers()
     results |= measure_arena("mppi") | measure_arena("rpp")
     return results | measure_barn(range(0, 100, 4))
 
@@ -99,29 +95,6 @@ def measure_controllers() -> dict[str, float | str]:
         "navigation.mppi_cycle_1000x56_ms": median_ms(lambda _: mppi.compute_velocity_commands(control), count=100),
         "navigation.pure_pursuit_cycle_ms": median_ms(lambda _: pursuit.compute_velocity_commands(control), count=100),
     }
-
-
-def measure_amcl() -> dict[str, float | str]:
-    """An update with 2000 particles and 60 beams, and the error while a robot with drifting odometry wanders."""
-    world = arena()
-    known = map_of(world, 8.0, 6.0)
-    start = np.array([1.5, 1.5, 0.3])
-    results: dict[str, float | str] = {}
-    for model in ("likelihood_field", "likelihood_field_prob", "beam"):
-        filter_ = Amcl(AmclConfig(laser_model_type=model), known)
-        filter_.initialize(start, np.diag([0.1, 0.1, 0.05]))
-        wanderer = Wanderer(FlatRobot(world, start.copy(), beams=180, max_range=12.0, seed=1), 1)
-        times, errors = [], []
-        for _ in range(400):
-            odometry, scan, truth = wanderer.step()
-            begun = time.perf_counter()
-            estimate = filter_.update(odometry, scan)
-            if estimate.updated:
-                times.append(time.perf_counter() - begun)
-            errors.append(math.hypot(*(estimate.pose - truth)[:2]))
-        results[f"localization.{model}_update_ms"] = 1e3 * statistics.median(times)
-        results[f"localization.{model}_rmse_m"] = math.sqrt(statistics.mean(e * e for e in errors[50:]))
-    return results
 
 
 def measure_arena(kind: str) -> dict[str, float | str]:

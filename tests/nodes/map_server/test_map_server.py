@@ -12,7 +12,7 @@ from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import load_map, save_map
 from daidalos.nodes.map_server import map_saver
-from daidalos.nodes.map_server.map_server import MapServer
+from daidalos.nodes.map_server.map_server import Ros1MapServer
 from daidalos.nodes.qos import LATCHED
 from nodes.nav2_map_server.test_map_server import call, received, result_of
 from ros.graph import graph, node, spinning  # noqa: F401
@@ -28,7 +28,7 @@ def arena(tmp_path):
 
 def test_a_map_is_served_and_changed(node, arena, tmp_path):  # noqa: F811
     other = save_map(OccupancyGrid(CELLS[:1], 0.1, (0.0, 0.0, 0.0)), tmp_path / "other")[0]
-    server = MapServer(str(arena))
+    server = Ros1MapServer(str(arena))
     first, infos = received(node), []
     node.create_subscription(MapMetaData, "map_metadata", infos.append, LATCHED)
     with spinning(server, node):
@@ -45,7 +45,7 @@ def test_a_map_is_served_and_changed(node, arena, tmp_path):  # noqa: F811
 
 def test_a_missing_file_is_named(graph, tmp_path):  # noqa: F811
     with pytest.raises(MapFileError, match=r"gone\.yaml"):
-        MapServer(str(tmp_path / "gone.yaml"))
+        Ros1MapServer(str(tmp_path / "gone.yaml"))
 
 
 def test_arguments_of_the_saver(monkeypatch, capsys):

@@ -15,6 +15,7 @@ from rclpy.task import Future
 
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import load_map, save_map
+from daidalos.nodes.extensions import find_component
 from daidalos.nodes.nav2_map_server._saving import MapSaverParameters, SaveRequest, save
 from daidalos.nodes.nav2_map_server.costmap_filter_info_server import CostmapFilterInfoServer
 from daidalos.nodes.nav2_map_server.map_saver_server import MapSaver
@@ -149,3 +150,8 @@ def test_filter_info_is_published_when_the_server_is_activated(node):  # noqa: F
         info = result_of(came)
     assert (info.type, info.filter_mask_topic, info.base, info.multiplier) == (1, "/speed_mask", 100.0, 1.0)
     server.destroy_node()
+
+
+@pytest.mark.parametrize("name", ["MapServer", "MapSaver", "CostmapFilterInfoServer"])
+def test_nav2s_names_of_components(name):
+    assert find_component("nav2_map_server", f"nav2_map_server::{name}").__name__ == name

@@ -24,7 +24,7 @@ class Ros1MapServerParameters(Parameters):
     frame_id: str = parameter("map", "Frame of the map.", not_empty=True)
 
 
-class MapServer(Node):
+class Ros1MapServer(Node):
     """Node that publishes a latched map, and serves ``static_map`` and ``change_map``.
 
     Parameters
@@ -80,4 +80,4 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="map_server", description="Publishes the map of a file")
     parser.add_argument("file", metavar="MAP.yaml", help="the map's YAML file")
     file = parser.parse_args(program_arguments()).file
-    return run(partial(MapServer, file))
+    return run(partial(Ros1MapServer, file))
