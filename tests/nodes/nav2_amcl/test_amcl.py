@@ -66,7 +66,7 @@ def localized(stage: Set) -> Bench:
 
 
 def test_a_robot_is_followed_from_a_guess_aside(stage: Set) -> None:
-    bench = Bench(stage)
+    bench = Bench(stage, max_particles=700)
     clouds = bench.stage.collect(ParticleCloud, "particle_cloud", qos_profile_sensor_data)
     arrays = bench.stage.collect(PoseArray, "particlecloud")
     bench.publish_map()
@@ -97,6 +97,7 @@ def test_a_robot_is_followed_from_a_guess_aside(stage: Set) -> None:
     assert (sent.child_frame_id, sent.header.stamp.sec) == ("odom", bench.stage.stamp.sec + 1)
 
 
+@pytest.mark.slow
 def test_global_localization_and_recovery_after_being_carried(stage: Set) -> None:
     bench = Bench(stage, recovery_alpha_slow=0.001, recovery_alpha_fast=0.1, tf_broadcast=True).activate()
     bench.publish_map()
