@@ -12,16 +12,16 @@ import numpy as np
 
 from daidalos.common import pose2
 from daidalos.common.kernels import warm_up
-from daidalos.mapping.evaluation import read_relations, relation_errors
+from daidalos.mapping.evaluation import clock_offset, read_relations, relation_errors, shifted
 from daidalos.mapping.grid import ScanGrid
-from daidalos.mapping.log import Log, read_log
+from daidalos.mapping.log import read_log
 from daidalos.mapping.offline import map_log
 from daidalos.mapping.scan import Cloud, LaserScanData, to_cloud
 from daidalos.mapping.scan_matching.matcher import PointMap, Window
 from daidalos.mapping.slam import Slam, SlamConfig
 
 DATA = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[2] / "shared" / "data")) / "slam"
-LOGS = ("intel", "fr079")
+LOGS = ("intel_5hz", "fr079")
 
 
 def run() -> dict[str, float | str]:
@@ -38,28 +38,32 @@ def run() -> dict[str, float | str]:
 
 
 def measure_log(name: str) -> dict[str, float | str]:
+    """Measure the error of the trajectory, which follows odometry between scans, and the time of mapping."""
     log = read_log(DATA / name)
-    relations = read_relations(DATA / name / f"{name}.relations")
+    truth = name.split("_")[0]
+    relations = read_relations(DATA / truth / f"{truth}.relations")
     start = time.perf_counter()
     mapped = map_log(log, SlamConfig(minimum_travel_distance=0.3, minimum_travel_heading=0.3))
     seconds = time.perf_counter() - start
-    errors = relation_errors(log.stamps_ns, mapped.poses, relations).summary()
+    trajectory = mapped.trajectory_ns, mapped.trajectory
+    errors = relation_errors(*trajectory, relations).summary()
+    offset = clock_offset(*trajectory, relations)
+    after = relation_errors(*trajectory, shifted(relations, offset)).summary()
     duration = float(log.stamps_ns[-1] - log.stamps_ns[0]) * 1e-9
+    odometry = relation_errors(log.odometry_stamps_ns, log.all_odometry, relations).summary()
     return {
         f"mapping.{name}_translation_m": errors["translation_mean_m"],
+        f"mapping.{name}_translation_median_m": errors["translation_median_m"],
         f"mapping.{name}_translation_std_m": errors["translation_std_m"],
         f"mapping.{name}_rotation_deg": errors["rotation_mean_deg"],
-        f"mapping.{name}_rotation_std_deg": errors["rotation_std_deg"],
-        f"mapping.{name}_odometry_translation_m": odometry_error(log, relations_path=name),
+        f"mapping.{name}_clock_offset_s": offset,
+        f"mapping.{name}_with_offset_translation_m": after["translation_mean_m"],
+        f"mapping.{name}_with_offset_rotation_deg": after["rotation_mean_deg"],
+        f"mapping.{name}_odometry_translation_m": odometry["translation_mean_m"],
         f"mapping.{name}_seconds": seconds,
         f"mapping.{name}_real_time_factor": duration / seconds,
         f"mapping.{name}_ms_per_scan": 1e3 * seconds / len(log.scans),
     }
-
-
-def odometry_error(log: Log, relations_path: str) -> float:
-    relations = read_relations(DATA / relations_path / f"{relations_path}.relations")
-    return float(relation_errors(log.stamps_ns, log.odometry, relations).translation.mean())
 
 
 def measure_parts() -> dict[str, float | str]:

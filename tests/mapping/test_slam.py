@@ -1,3 +1,4 @@
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -5,9 +6,10 @@ import numpy as np
 import pytest
 
 from daidalos.common import pose2
+from daidalos.common.pose3 import quaternion_from_rpy, rotation_matrix
 from daidalos.mapping.evaluation import compare_with_truth
 from daidalos.mapping.grid import OccupancyGrid, ScanGrid
-from daidalos.mapping.scan import LaserScanData
+from daidalos.mapping.scan import LaserScanData, to_cloud
 from daidalos.mapping.slam import ScanResult, Slam, SlamConfig
 
 from .worlds import Lidar, arena, box, cast, corridors, drive, raster, room_scan, wheel_odometry
@@ -218,3 +220,66 @@ def test_nothing_is_mapped_before_the_first_usable_scan() -> None:
 def test_odometry_that_is_no_pose_is_refused(pose: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="finite odometry pose"):
         Slam().add_scan(0, room_scan([0, 0, 0]), pose)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"ranges": np.zeros(0, np.float32)}, "it has no ranges"),
+        ({"ranges": np.full(360, np.nan, np.float32)}, "all its 360 ranges are NaN"),
+        ({"ranges": np.full(360, np.inf, np.float32)}, "all its 360 ranges are infinite"),
+        ({"ranges": np.full(360, 99.0, np.float32)}, "all its 360 ranges are outside of its range limits"),
+        ({"angle_increment": np.nan}, "its angle_increment is nan"),
+        ({"angle_increment": 0.0}, "its angle_increment is 0"),
+        ({"range_min": 5.0, "range_max": 1.0}, r"its range_min \(5\) is not below its range_max \(1\)"),
+        ({"ranges": np.array([1.0, 1.1, 1.2], np.float32)}, "only 3 of its ranges"),
+    ],
+)
+def test_a_scan_that_cannot_be_used_has_a_reason_and_changes_nothing(changes: dict, reason: str) -> None:
+    lidar, rng = Lidar(beams=360), np.random.default_rng(1)
+    slam = Slam(SlamConfig(match_every_scan=True))
+    first = slam.add_scan(0, replace(lidar.scan(arena(), np.zeros(3), rng), **changes), np.zeros(3))
+    assert re.match(reason, first.problem)
+    assert not first.added
+    assert slam.add_scan(10**8, lidar.scan(arena(), np.zeros(3), rng), np.zeros(3)).added
+    bad = slam.add_scan(2 * 10**8, replace(lidar.scan(arena(), np.zeros(3), rng), **changes), np.array([0.3, 0.0, 0.0]))
+    assert re.match(reason, bad.problem)
+    assert slam.key_count == 1
+    assert bad.pose == pytest.approx([0.3, 0.0, 0.0])
+    good = slam.add_scan(3 * 10**8, lidar.scan(arena(), np.array([0.3, 0.0, 0.0]), rng), np.array([0.3, 0.0, 0.0]))
+    assert good.matched
+    assert not good.problem
+    assert good.pose == pytest.approx([0.3, 0.0, 0.0], abs=0.03)
+
+
+def test_jumps_of_odometry_and_of_time_are_reported_and_do_no_harm() -> None:
+    lidar, rng = Lidar(beams=360), np.random.default_rng(1)
+    slam = Slam(SlamConfig(match_every_scan=True))
+    true = drive(np.array([[-3.0, -2.3], [0.0, -2.3]]), rate=5.0)
+    reset = np.array([50.0, -20.0, 1.0])
+    problems = []
+    for k, pose in enumerate(true):
+        odom = pose if k < 15 else pose2.compose(reset, pose)
+        stamp_ns = (k if k < 20 else k - 15) * 200_000_000
+        result = slam.add_scan(stamp_ns, lidar.scan(arena(), pose, rng), odom)
+        assert np.hypot(*(result.pose - pose)[:2]) < 0.12
+        problems.append(result.problem)
+    assert "odometry jumped by" in problems[15]
+    assert "before that of the last scan" in problems[20]
+    assert all(not problem for k, problem in enumerate(problems) if k not in (15, 20))
+
+
+@pytest.mark.parametrize("tilt", [(np.pi, 0.0), (0.0, 0.2), (0.15, -0.1)])
+def test_a_lidar_that_hangs_upside_down_or_is_tilted_sees_the_same_walls(tilt: tuple[float, float]) -> None:
+    """A tilted plane of beams meets upright walls farther away, at directions that are not evenly spaced."""
+    yaw, (roll, pitch), count = 0.4, tilt, 720
+    angles = -np.pi + 2 * np.pi / count * np.arange(count)
+    rotation = rotation_matrix(quaternion_from_rpy(roll, pitch, yaw))
+    beams = np.stack([np.cos(angles), np.sin(angles), np.zeros(count)], axis=1) @ rotation.T
+    level = np.hypot(beams[:, 0], beams[:, 1])
+    ranges = cast(arena(), np.zeros(2), np.arctan2(beams[:, 1], beams[:, 0])) / level
+    scan = LaserScanData(ranges.astype(np.float32), -np.pi, 2 * np.pi / count, 0.05, 30.0, 0.0, (0.0, 0.0, yaw), tilt)
+    ends = to_cloud(scan, 20.0).ends
+    seen = cast(arena(), np.zeros(2), np.arctan2(ends[:, 1], ends[:, 0]))
+    assert np.median(np.abs(np.hypot(*ends.T) - seen)) < 1e-3
+    assert len(ends) == count

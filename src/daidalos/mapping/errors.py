@@ -55,3 +55,20 @@ class RelationsError(MappingError):
         super().__init__(problem, Location(str(path), line))
         self.path = path
         self.line = line
+
+
+class GraphFileError(MappingError):
+    """Error of a file of a pose graph or a trajectory.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    line : int or None
+        Number of the line, from 1.
+    """
+
+    def __init__(self, path: Path, line: int | None, problem: str) -> None:
+        super().__init__(problem, Location(str(path), line))
+        self.path = path
+        self.line = line

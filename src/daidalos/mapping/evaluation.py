@@ -13,6 +13,9 @@ from daidalos.mapping.grid import OCCUPIED, OccupancyGrid
 
 Stamps = NDArray[np.int64]
 
+MAX_CLOCK_OFFSET, CLOCK_OFFSET_STEP = 0.3, 0.01
+"""Largest difference [s] of two clocks that is looked for, and the step of the search."""
+
 
 @dataclass(frozen=True)
 class Relations:
@@ -57,6 +60,7 @@ class RelationErrors:
         degrees = np.degrees(self.rotation)
         return {
             "translation_mean_m": float(self.translation.mean()),
+            "translation_median_m": float(np.median(self.translation)),
             "translation_std_m": float(self.translation.std()),
             "rotation_mean_deg": float(degrees.mean()),
             "rotation_std_deg": float(degrees.std()),
@@ -146,6 +150,28 @@ def relation_errors(stamps_ns: Stamps, poses: Array, relations: Relations) -> Re
     end = poses_at(stamps_ns, poses, relations.stamps_ns[:, 1])
     error = pose2.between(relations.poses, pose2.between(start, end))
     return RelationErrors(np.hypot(error[:, 0], error[:, 1]), np.abs(error[:, 2]))
+
+
+def clock_offset(stamps_ns: Stamps, poses: Array, relations: Relations) -> float:
+    """Return the time [s] by which the clock of relations is ahead of a trajectory's, from their rotations.
+
+    Parameters
+    ----------
+    stamps_ns : ndarray of int64, shape (n,)
+        Times of the trajectory [ns], not decreasing.
+    poses : ndarray, shape (n, 3)
+        The trajectory.
+    relations : Relations
+        The truth.
+    """
+    offsets = np.round(np.arange(-MAX_CLOCK_OFFSET, MAX_CLOCK_OFFSET + 1e-9, CLOCK_OFFSET_STEP), 9)
+    errors = [relation_errors(stamps_ns, poses, shifted(relations, offset)).rotation.mean() for offset in offsets]
+    return float(offsets[int(np.argmin(errors))])
+
+
+def shifted(relations: Relations, offset: float) -> Relations:
+    """Return relations whose clock is set back by an offset [s]."""
+    return Relations(relations.stamps_ns - round(offset * 1e9), relations.poses)
 
 
 def poses_at(stamps_ns: Stamps, poses: Array, times_ns: Stamps) -> Array:

@@ -25,6 +25,9 @@ LASER_SCAN = "sensor_msgs/msg/LaserScan"
 ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
 
+TURN_WEIGHT = 1.0
+"""Distance [m] that counts as much as a turn of 1 rad where an error is spread over a motion."""
+
 LATEST_ODOMETRY = 200_000_000
 """How long [ns] before the first or after the last odometry a scan may be for that odometry to be used."""
 
@@ -43,6 +46,10 @@ class Log:
         Pose (x, y, yaw) of the base in the odometry frame at those times.
     scan_topic, odometry_source : str
         Where they come from.
+    odometry_stamps_ns : ndarray of int64, shape (m,)
+        Times of all odometry [ns], each later than the one before.
+    all_odometry : ndarray, shape (m, 3)
+        The poses at those times.
     """
 
     stamps_ns: Stamps
@@ -50,6 +57,37 @@ class Log:
     odometry: Array
     scan_topic: str
     odometry_source: str
+    odometry_stamps_ns: Stamps
+    all_odometry: Array
+
+    def trajectory(self, poses: Array) -> tuple[Stamps, Array]:
+        """Return a trajectory through poses at the scans that follows odometry between them.
+
+        What odometry erred between two scans is spread over the motion between them.
+
+        Parameters
+        ----------
+        poses : ndarray, shape (n, 3)
+            Poses (x, y, yaw) in the map at the scans.
+
+        Returns
+        -------
+        tuple of ndarray of int64, shape (k,), and ndarray, shape (k, 3)
+            Times [ns] of all scans and all odometry, and the poses at them.
+        """
+        times = np.union1d(self.stamps_ns, self.odometry_stamps_ns)
+        odometry = poses_at(self.odometry_stamps_ns, self.all_odometry, times)
+        step = pose2.between(odometry[:-1], odometry[1:])
+        motion = np.hypot(step[:, 0], step[:, 1]) + TURN_WEIGHT * np.abs(step[:, 2]) + 1e-9
+        travelled = np.concatenate([[0.0], np.cumsum(motion)])
+        at = np.searchsorted(times, self.stamps_ns)
+        before = np.clip(np.searchsorted(self.stamps_ns, times, side="right") - 1, 0, len(poses) - 1)
+        after = np.minimum(before + 1, len(poses) - 1)
+        forwards = pose2.compose(poses[before], pose2.between(odometry[at[before]], odometry))
+        backwards = pose2.compose(poses[after], pose2.between(odometry[at[after]], odometry))
+        whole = np.maximum(travelled[at[after]] - travelled[at[before]], 1e-9)
+        share = np.clip((travelled - travelled[at[before]]) / whole, 0.0, 1.0)
+        return times, pose2.interpolate(forwards, backwards, share)
 
 
 def read_log(path: str | Path, *, scan_topic: str | None = None, odom_topic: str | None = None) -> Log:
@@ -113,7 +151,9 @@ def _collect(bag: Path, reader: BagReader, scan_topic: str | None, odom_topic: s
     if not covered.any():
         raise LogError(bag, f"no scan on {scan_topic} has odometry at its time: {source} covers another period")
     kept = [_scan(bag, message, mounts) for message, use in zip(scans, covered, strict=True) if use]
-    return Log(times[covered], kept, poses_at(stamps, poses, times[covered]), scan_topic, source)
+    at_scans = poses_at(stamps, poses, times[covered])
+    distinct, first = np.unique(stamps, return_index=True)
+    return Log(times[covered], kept, at_scans, scan_topic, source, distinct, poses[first])
 
 
 def _codec(type_name: str) -> Codec:

@@ -8,7 +8,7 @@ import numpy as np
 from daidalos.common import pose2
 from daidalos.common.arrays import Array
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.mapping.log import Log
+from daidalos.mapping.log import Log, Stamps
 from daidalos.mapping.slam import Slam, SlamConfig
 
 
@@ -24,12 +24,18 @@ class LogMap:
         Pose (x, y, yaw) of the base in the map at each scan of the log.
     key_scans, closures : int
         Number of scans that make up the map, and of recognized places.
+    trajectory_ns : ndarray of int64, shape (k,)
+        Times [ns] of the scans and the odometry between them.
+    trajectory : ndarray, shape (k, 3)
+        Poses at those times, which follow odometry between the scans.
     """
 
     grid: OccupancyGrid
     poses: Array
     key_scans: int
     closures: int
+    trajectory_ns: Stamps
+    trajectory: Array
 
 
 def map_log(log: Log, config: SlamConfig | None = None, progress: Callable[[int], None] = lambda done: None) -> LogMap:
@@ -60,4 +66,4 @@ def map_log(log: Log, config: SlamConfig | None = None, progress: Callable[[int]
         mapped = keys >= 0
         poses[mapped] = pose2.compose(slam.key_poses[keys[mapped]], on_key[mapped])
     closures = sum(edge.closure for edge in slam.edges)
-    return LogMap(slam.grid(), poses, slam.key_count, closures)
+    return LogMap(slam.grid(), poses, slam.key_count, closures, *log.trajectory(poses))

@@ -196,7 +196,54 @@ def test_a_sensor_without_a_transform_is_named_and_keeps_nobody_waiting(
         header.stamp, header.frame_id = bench.stage.stamp, "periscope"
         bench.look(np.zeros(3), np.zeros(3), header=header)
     bench.wait_for_map()
-    assert "waiting for the transform from periscope to base_link" in capfd.readouterr().err
+    text = capfd.readouterr().err
+    assert "scans of 'periscope' are not used: waiting for the transform from periscope to base_link" in text
+    assert text.count("periscope to base_link") == 1
+
+
+def test_a_base_that_is_named_wrongly_and_missing_odometry_are_reported(
+    stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
+) -> None:
+    values = {**PARAMETERS["/slam_toolbox"], "odom_frame": "odometry"}
+    bench = Bench(stage({"/slam_toolbox": values}))
+    reported = ""
+
+    def names_odometry() -> bool:
+        nonlocal reported
+        bench.look(np.zeros(3), np.zeros(3))
+        reported += capfd.readouterr().err
+        return "wait for the transform odometry -> base_link" in reported
+
+    bench.stage.step_until(names_odometry)
+    assert bench.map_to_odom == []
+
+
+def test_a_scan_without_measurements_is_reported(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
+    bench.wait_for_map()
+    bench.look(np.zeros(3), np.zeros(3), ranges=array("f", [math.nan] * 180))
+    reported = ""
+
+    def names_reason() -> bool:
+        nonlocal reported
+        reported += capfd.readouterr().err
+        return "a scan of 'laser': all its 180 ranges are NaN" in reported
+
+    bench.stage.step_until(names_reason)
+
+
+def test_parameters_without_effect_are_named_once_with_their_reason(
+    stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
+) -> None:
+    given = {
+        "solver_plugin": "solver_plugins::CeresSolver",
+        "stack_size_to_use": 40000000,
+        "ceres_preconditioner": "JACOBI",
+    }
+    Bench(stage({"/slam_toolbox": {**PARAMETERS["/slam_toolbox"], **given}}))
+    text = capfd.readouterr().err
+    assert text.count("without effect") == 2
+    assert "solver_plugin, ceres_preconditioner: poses are solved by a sparse Levenberg-Marquardt" in text
+    assert "stack_size_to_use: files are written without recursion" in text
 
 
 def test_the_map_is_saved(bench: Bench, tmp_path: Path) -> None:

@@ -85,18 +85,26 @@ def _run(args: argparse.Namespace) -> dict[str, Any]:
     relations = read_relations(args.relations) if args.relations else None
     log = read_log(args.bag, scan_topic=args.scan_topic, odom_topic=args.odom_topic)
     if relations is not None:
-        raw_errors = _errors(args.relations, log, log.odometry, relations)
+        raw_errors = _errors(args.relations, log.odometry_stamps_ns, log.all_odometry, relations)
     mapped, seconds = _map(log, args)
     if mapped.grid.data.size == 0:
         raise UserError(f"{args.bag}: no scan on {log.scan_topic} has enough valid ranges to map")
     written = list(save_map(mapped.grid, output, args.mode))
     if args.trajectory:
-        _write_trajectory(args.trajectory, log, mapped)
+        _write_trajectory(args.trajectory, mapped)
         written.append(args.trajectory)
     report = _report(log, mapped, seconds, written)
     if relations is not None:
+        from daidalos.mapping.evaluation import clock_offset, shifted
+
+        trajectory = mapped.trajectory_ns, mapped.trajectory
         report["odometry_error"] = raw_errors.summary()
-        report["slam_error"] = _errors(args.relations, log, mapped.poses, relations).summary()
+        report["slam_error"] = _errors(args.relations, *trajectory, relations).summary()
+        offset = clock_offset(*trajectory, relations)
+        report["clock_offset_s"] = offset
+        report["slam_error_with_clock_offset"] = _errors(
+            args.relations, *trajectory, shifted(relations, offset)
+        ).summary()
     return report
 
 
@@ -142,22 +150,22 @@ def _progress_bar(total: int) -> Iterator[tuple[Callable[[float, str], None], Ca
         yield prepare, advance
 
 
-def _errors(path: Path, log: "Log", poses: Any, relations: "Relations") -> "RelationErrors":
+def _errors(path: Path, stamps_ns: Any, poses: Any, relations: "Relations") -> "RelationErrors":
     from daidalos.mapping.evaluation import relation_errors
 
     try:
-        return relation_errors(log.stamps_ns, poses, relations)
+        return relation_errors(stamps_ns, poses, relations)
     except ValueError as error:
         raise UserError(f"{path}: {error}") from error
 
 
-def _write_trajectory(path: Path, log: "Log", mapped: "LogMap") -> None:
+def _write_trajectory(path: Path, mapped: "LogMap") -> None:
     """Write a trajectory in TUM format: time x y z qx qy qz qw."""
     import numpy as np
 
     lines = [
         f"{stamp // 10**9}.{stamp % 10**9:09d} {x:.6f} {y:.6f} 0 0 0 {np.sin(yaw / 2):.9f} {np.cos(yaw / 2):.9f}\n"
-        for stamp, (x, y, yaw) in zip(log.stamps_ns.tolist(), mapped.poses, strict=True)
+        for stamp, (x, y, yaw) in zip(mapped.trajectory_ns.tolist(), mapped.trajectory, strict=True)
     ]
     try:
         path.write_text("".join(lines), encoding="ascii")
@@ -190,13 +198,16 @@ def _as_text(report: dict[str, Any]) -> str:
         f"{report['closures']} loop closures",
         f"{', '.join(report['files'])}: {report['columns']} x {report['rows']} cells of {report['resolution']:g} m",
     ]
-    for name, key in (("odometry", "odometry_error"), ("slam", "slam_error")):
+    after = f"slam, clocks {report.get('clock_offset_s', 0.0):+.2f} s apart"
+    kinds = (("odometry", "odometry_error"), ("slam", "slam_error"), (after, "slam_error_with_clock_offset"))
+    for name, key in kinds:
         if key in report:
             error = report[key]
             lines.append(
                 f"error of {name + ':':<9} translation {error['translation_mean_m']:.4f} +- "
-                f"{error['translation_std_m']:.4f} m, rotation {error['rotation_mean_deg']:.3f} +- "
-                f"{error['rotation_std_deg']:.3f} deg over {error['relations']} relations"
+                f"{error['translation_std_m']:.4f} m (median {error['translation_median_m']:.4f}), "
+                f"rotation {error['rotation_mean_deg']:.3f} +- {error['rotation_std_deg']:.3f} deg "
+                f"over {error['relations']} relations"
             )
     return "\n".join(lines)
 
