@@ -28,6 +28,7 @@ ALLOWED = {
     "nodes/keyboard.py": "how long a person has to press a key",
     "nodes/nav2_planner/planner_server.py": "the computing time that the result of a plan reports",
     "nodes/ros_gz_sim/create.py": "how long a person waits for a simulator whose time may stand still",
+    "nodes/slam_toolbox/_slam_toolbox.py": "start and waiting scans while simulated time stands still",
     "nodes/tf2_tools/view_frames.py": "the name of a file",
     "nodes/topic_tools/delay.py": "real time where the parameter use_wall_clock asks for it",
     "nodes/topic_tools/throttle.py": "real time where the parameter use_wall_clock asks for it",

@@ -350,7 +350,7 @@ class Slam:
         self._local = None
 
     def _begin(self, stamp_ns: int, scan: LaserScanData, odom: Array) -> ScanResult:
-        """Begin a map with the first scan, or find it in the map that there is."""
+        """Start a map with the first scan, or find it in the map that there is."""
         cloud = to_cloud(scan, self.config.max_laser_range)
         guess = odom if self._start is None else self._start
         self._last_pose, self._last_odom, self._last_stamp_ns = guess, odom, stamp_ns

@@ -151,7 +151,7 @@ class SlamToolbox(ManagedNode):
         return Slam(self._settings, saved)
 
     def _put_robot(self) -> None:
-        """Tell the map where the robot starts, as the parameters say: at a pose, or where the map begins."""
+        """Set where the robot starts in the map, by the parameters: at a pose, or where the map begins."""
         p = self._settings
         if p.map_start_pose:
             self._slam.start_at(p.map_start_pose)
@@ -161,7 +161,7 @@ class SlamToolbox(ManagedNode):
             self._slam.start_at((0.0, 0.0, 0.0))
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to work on scans and to publish."""
+        """Start to work on scans and to publish."""
         p = self._settings
         self._reports.start()
         scans, transforms = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()

@@ -10,7 +10,7 @@ class LocalizationSlamToolbox(LocalizingSlamToolbox):
     """Node that localizes the robot in the pose graph that ``map_file_name`` names."""
 
     def configure(self) -> None:
-        """Say where the map comes from where none is given."""
+        """Warn where no map is given."""
         super().configure()
         if not self._settings.map_file_name:
             self.get_logger().warning(

@@ -15,7 +15,7 @@ class MapAndLocalizationSlamToolbox(LocalizingSlamToolbox):
     kind = MapAndLocalizationParameters
 
     def configure(self) -> None:
-        """Begin with what the parameter says, and serve the change."""
+        """Start with what the parameter says, and serve the change."""
         from std_srvs.srv import SetBool
 
         settings = self._settings
