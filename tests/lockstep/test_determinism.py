@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 
 from daidalos.lockstep.options import Options
 from lockstep.test_runs import run, script
@@ -104,3 +105,6 @@ def test_mapping_and_navigation_give_the_same_bag_every_time(tmp_path: Path) -> 
     command = ("daidalos", "demo", "--headless", "--seed", 1)
     printed = twice(tmp_path, *command, options=Options(1, 12.0, "bag", "^/camera/"), files={})
     assert "goal 1 of 3" in printed[0]
+    counts = yaml.safe_load((tmp_path / "1/bag/metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    topics = {one["topic_metadata"]["name"]: one["message_count"] for one in counts["topics_with_message_count"]}
+    assert topics["/plan"] > 0  # it knows where it is on the map

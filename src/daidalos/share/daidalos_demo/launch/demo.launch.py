@@ -54,7 +54,10 @@ def generate_launch_description():
                         package="slam_toolbox",
                         plugin="slam_toolbox::AsynchronousSlamToolbox",
                         name="slam_toolbox",
-                        parameters=[share("slam_toolbox", "config", "mapper_params_online_async.yaml")],
+                        parameters=[
+                            share("slam_toolbox", "config", "mapper_params_online_async.yaml"),
+                            {"use_sim_time": True},
+                        ],
                     )
                 ],
                 output="screen",

@@ -24,6 +24,7 @@ SERVERS = [
     ("nav2_lifecycle_manager", "nav2_lifecycle_manager::LifecycleManager", "lifecycle_manager_navigation"),
 ]
 START = 5.0
+SIMULATED = {"use_sim_time": True}
 AHEAD = "{{pose: {{header: {{frame_id: map}}, pose: {{position: {{x: {:g}}}, orientation: {{w: 1.0}}}}}}}}"
 
 
@@ -55,12 +56,10 @@ def robot(name, x, y, description, distance):
     navigation = parameters_of(name, "nav2_bringup", "params", "nav2_params.yaml")
     mapping = parameters_of(name, "slam_toolbox", "config", "mapper_params_online_async.yaml")
     servers = [
-        ComposableNode(
-            package=package, plugin=plugin, name=node, namespace=name, parameters=[parameters], remappings=own
-        )
+        ComposableNode(package=package, plugin=plugin, name=node, namespace=name, parameters=parameters, remappings=own)
         for package, plugin, node, parameters in (
-            ("slam_toolbox", "slam_toolbox::AsynchronousSlamToolbox", "slam_toolbox", mapping),
-            *((*server, navigation) for server in SERVERS),
+            ("slam_toolbox", "slam_toolbox::AsynchronousSlamToolbox", "slam_toolbox", [mapping, SIMULATED]),
+            *((*server, [navigation]) for server in SERVERS),
         )
     ]
     goal = AHEAD.format(distance)
@@ -70,7 +69,7 @@ def robot(name, x, y, description, distance):
             package="robot_state_publisher",
             executable="robot_state_publisher",
             namespace=name,
-            parameters=[{"robot_description": ParameterValue(description, value_type=str), "use_sim_time": True}],
+            parameters=[{"robot_description": ParameterValue(description, value_type=str)}, SIMULATED],
             remappings=own,
         ),
         Node(
