@@ -63,6 +63,7 @@ def test_topics_services_and_programs(
         ScenarioFailure, match=r"(?s)/left/chatter data should never be as the function requires.*Hello"
     ):
         chatter.field("data").never(lambda text: text.endswith("7"), during=5)
+    assert "Hello World: 1" in talker.prints(r"World: 1", within=1)
     talker.kill()
     assert not talker.is_alive
     with pytest.raises(ScenarioFailure, match=r"no value came within 3 s \(from"):

@@ -51,6 +51,16 @@ class _Reporter:
         self._config = config
         self._file = reports.open("ab")
 
+    @pytest.hookimpl(tryfirst=True, optionalhook=True)
+    def pytest_timeout_set_timer(self) -> bool:
+        """Start no timer of pytest-timeout: the pytest that waits for this process has one."""
+        return True
+
+    @pytest.hookimpl(tryfirst=True, optionalhook=True)
+    def pytest_timeout_cancel_timer(self) -> bool:
+        """Cancel none."""
+        return True
+
     @pytest.hookimpl(wrapper=True)
     def pytest_pyfunc_call(self) -> Any:
         """Fail a test that has passed, but broke a requirement."""

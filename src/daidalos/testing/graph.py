@@ -248,8 +248,8 @@ class ActionClient:
         outcome = result.result()
         if outcome.status != GoalStatus.STATUS_SUCCEEDED:
             names = {
-                value: name.removeprefix("STATUS_").lower()
-                for name, value in vars(type(GoalStatus)).items()
+                getattr(GoalStatus, name): name.removeprefix("STATUS_").lower()
+                for name in dir(GoalStatus)
                 if name.startswith("STATUS_")
             }
             status = names.get(outcome.status, outcome.status)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
+import sys
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -46,6 +48,35 @@ class ScenarioRun(Run):
         return self._recipes[id(program)][1]
 
 
+class Output:
+    """Output of a program: passed on to that of the test, and kept line by line.
+
+    Parameters
+    ----------
+    scenario : Scenario
+
+    Attributes
+    ----------
+    lines : list of str
+        Whole lines so far.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.lines: list[str] = []
+        self._scenario = scenario
+        self._streams = {1: sys.stdout, 2: sys.stderr}  # those of the test; a program has its own
+        self._begun = {1: b"", 2: b""}
+
+    def __call__(self, fd: int, data: bytes) -> None:
+        """Take what the program writes."""
+        *lines, self._begun[fd] = (self._begun[fd] + data).split(b"\n")
+        for line in lines:
+            text = line.decode(errors="replace")
+            self.lines.append(text)
+            self._streams[fd].write(f"{text}\n")
+        self._scenario.notify()
+
+
 class RunningNode:
     """Program with a node, as a test handles it.
 
@@ -53,11 +84,14 @@ class RunningNode:
     ----------
     scenario : Scenario
     program : Program
+    output : Output, optional
+        None for a program that something else has started.
     """
 
-    def __init__(self, scenario: Scenario, program: Program) -> None:
+    def __init__(self, scenario: Scenario, program: Program, output: Output | None = None) -> None:
         self.program = program
         self._scenario = scenario
+        self._output = output
 
     @property
     def is_alive(self) -> bool:
@@ -92,6 +126,29 @@ class RunningNode:
         if not self._scenario.wait(lambda: not self.is_alive, within):
             raise ScenarioFailure(f"'{self.program.name}' has not ended within {within:g} s")
         return self.program.status or 0
+
+    def prints(self, pattern: str, within: float) -> str:
+        """Require that it prints, or has printed, a line with a regular expression; return the line.
+
+        Raises
+        ------
+        ScenarioFailure
+            With its last lines.
+        UserError
+            For a program that a launch file has started; its launch prints what it prints.
+        """
+        __tracebackhide__ = True
+        if self._output is None:
+            raise UserError(f"the output of '{self.program.name}' is that of its launch")
+        lines = self._output.lines
+
+        def found() -> str | None:
+            return next((line for line in lines if re.search(pattern, line)), None)
+
+        if not self._scenario.wait(lambda: found() is not None, within):
+            last = "".join(f"\n  {line}" for line in lines[-10:])
+            raise ScenarioFailure(f"'{self.program.name}' has not printed {pattern!r} within {within:g} s{last}")
+        return found() or ""
 
     def _end(self, number: int) -> None:
         ended = threading.Event()
@@ -161,13 +218,11 @@ class Nodes:
         if use_sim_time is not None:
             ros += ["-p", f"use_sim_time:={str(use_sim_time).lower()}"]
         command = ["ros2", "run", package, executable, *arguments, *(["--ros-args", *ros] if ros else [])]
-        return self._keep(name or executable, self._scenario.start_program(command))
+        return self._start(name or executable, command)
 
     def script(self, path: str | Path, *arguments: str) -> RunningNode:
         """Start a Python file."""
-        import sys
-
-        return self._keep(Path(path).stem, self._scenario.start_program([sys.executable, str(path), *arguments]))
+        return self._start(Path(path).stem, [sys.executable, str(path), *arguments])
 
     def add(self, make: Callable[[], Node], threads: int = 1) -> Node:
         """Create a node by a class or function of no arguments in a program of its own, spin it, and return it.
@@ -213,7 +268,7 @@ class Nodes:
         """
         pairs = [f"{name}:={_launch_text(value)}" for name, value in arguments.items()]
         command = ["ros2", "launch", *map(str, words), *pairs]
-        return self._keep(Path(str(words[-1])).name, self._scenario.start_program(command))
+        return self._start(Path(str(words[-1])).name, command)
 
     def __getitem__(self, name: str) -> RunningNode:
         """Return a program by the name of its node, its executable or its launch file, started by whomever.
@@ -234,8 +289,12 @@ class Nodes:
             raise UserError(f"there is no node '{name}'{hint(name, names)}")
         return self._keep(name, names[name])
 
-    def _keep(self, name: str, program: Program) -> RunningNode:
-        node = RunningNode(self._scenario, program)
+    def _start(self, name: str, command: list[str]) -> RunningNode:
+        output = Output(self._scenario)
+        return self._keep(name, self._scenario.start_program(command, on_output=output), output)
+
+    def _keep(self, name: str, program: Program, output: Output | None = None) -> RunningNode:
+        node = RunningNode(self._scenario, program, output)
         self.started[name] = node
         return node
 
