@@ -30,7 +30,7 @@ def test_they_are_found_by_their_names() -> None:
 
 
 def said(watcher: Node, text: str) -> threading.Event:
-    """Wait until that is logged."""
+    """Return an event that is set when a text is logged."""
     event = threading.Event()
     watcher.create_subscription(Log, "/rosout", lambda log: event.set() if text in log.msg else None, 10)
     return event
