@@ -93,9 +93,10 @@ def _restart_in_lockstep(arguments: argparse.Namespace) -> int:
 
 def _try_out(arguments: argparse.Namespace) -> int:
     """Launch without the studio, run the test drive and report its results."""
-    # A domain of its own: the trial neither disturbs nor is disturbed by what runs beside it.
-    os.environ.setdefault("ROS_DOMAIN_ID", str(_TRIAL_DOMAIN))
     run = lockstep.current_run
+    if run is None:
+        # A domain of its own: the trial neither disturbs nor is disturbed by what runs beside it.
+        os.environ.setdefault("ROS_DOMAIN_ID", str(_TRIAL_DOMAIN))
     launched = _launched(arguments.seed) if run is None else _launched_in(run, arguments.seed)
     with launched as (process, log):
         load = _load_recorder(process)
