@@ -127,7 +127,7 @@ class WorldEnv(gymnasium.Env[dict[str, Any], Array]):  # type: ignore[misc, unus
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Begin an episode; the same seed gives the same episode for the same actions.
+        """Start an episode; the same seed gives the same episode for the same actions.
 
         Parameters
         ----------

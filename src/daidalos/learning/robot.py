@@ -118,7 +118,7 @@ class SimulatedRobot:
     # Motion.
 
     def reset(self, x: float, y: float, yaw: float, stream: np.random.Generator) -> None:
-        """Begin again at a pose, with noise from a stream."""
+        """Restart at a pose, with noise from a stream."""
         self.simulation.restore(self._begin)
         for component in self._instance.components:
             component.random = np.random.default_rng(stream.integers(1 << 62))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.documents import parse_yaml
 from daidalos.common.pose3 import Pose
 from daidalos.common.suggestions import hint
 from daidalos.testing.scenario import Scenario, ScenarioFailure
@@ -119,9 +120,7 @@ class _Transform(Signal):
 
     def explain(self) -> str:
         """Return which of the frames there is none of."""
-        import yaml
-
-        frames = yaml.safe_load(self._buffer.all_frames_as_yaml()) or {}
+        frames = parse_yaml(self._buffer.all_frames_as_yaml()) or {}
         names = sorted({*frames, *(frame["parent"] for frame in frames.values())})
         missing = [frame for frame in self._frames if frame not in names]
         return "".join(f"; there is no frame '{frame}'{hint(frame, names)}" for frame in missing)

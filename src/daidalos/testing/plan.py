@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from daidalos.common.documents import parse_yaml
 from daidalos.common.errors import UserError
 
 
@@ -41,18 +42,16 @@ class Variation:
         ------
         UserError
         """
-        import yaml
-
         name, separator, given = text.partition("=")
         if not separator or not name or not given:
             raise UserError(f"expected NAME=LOW..HIGH or NAME=A,B,C, got '{text}'")
         if ".." in given:
-            ends = [yaml.safe_load(end) for end in given.split("..", 1)]
+            ends = [parse_yaml(end) for end in given.split("..", 1)]
             if not all(isinstance(end, int | float) and not isinstance(end, bool) for end in ends) or ends[0] > ends[1]:
                 raise UserError(f"expected a range of two rising numbers such as {name}=0.2..1.0, got '{text}'")
             is_whole = all(isinstance(end, int) for end in ends)
             return cls(name, (), float(ends[0]), float(ends[1]), is_whole)
-        return cls(name, tuple(yaml.safe_load(value) for value in given.split(",")))
+        return cls(name, tuple(parse_yaml(value) for value in given.split(",")))
 
     def draw(self, stream: random.Random) -> Any:
         """Return a value."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from daidalos.cli.daidalos.launching import run_launch
+from daidalos.common.documents import parse_yaml
 from daidalos.common.errors import UserError
 
 
@@ -65,12 +66,10 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _parse_setting(text: str) -> tuple[str, Any]:
-    import yaml
-
     name, separator, value = text.partition("=")
     if not separator or not name:
         raise UserError(f"expected NAME=VALUE, got '{text}'")
-    return name, yaml.safe_load(value)
+    return name, parse_yaml(value)
 
 
 def _show(args: argparse.Namespace) -> int:

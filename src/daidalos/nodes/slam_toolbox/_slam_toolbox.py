@@ -62,8 +62,9 @@ class SlamToolbox(ManagedNode):
 
         from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 
-        is_managed = "use_lifecycle_manager" in self._parameter_overrides
         self._settings = p = declare(self, self.kind, reconfigure=self._reconfigure)
+        # Launch files that give it, even as false, change the state themselves.
+        is_managed = p.use_lifecycle_manager or "use_lifecycle_manager" in self._parameter_overrides
         declare_without_effect(self, WITHOUT_EFFECT)
         for name in ("paused_new_measurements", "paused_processing", "interactive_mode"):
             self.declare_parameter(name, value=False)
