@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.common.parameters import ParameterError
-from daidalos.navigation.velocity_smoother import VelocitySmoother, VelocitySmootherParameters
+from daidalos.navigation.velocity_smoother import MeasuredVelocity, VelocitySmoother, VelocitySmootherParameters
 
 component = st.floats(-5.0, 5.0)
 
@@ -88,3 +88,22 @@ def test_a_command_that_is_not_finite_is_a_stop():
 def test_parameters_that_make_no_sense_are_refused(values):
     with pytest.raises(ParameterError):
         VelocitySmootherParameters(**values)
+
+
+def test_a_command_does_not_outlast_a_clock_that_is_set_back():
+    smoother = VelocitySmoother()
+    smoother.command(np.array([0.1, 0.0, 0.0]), 100.0)
+    assert smoother.step(100.0)[0] == pytest.approx(0.1)
+    assert not smoother.step(3.0).any()
+    assert smoother.step(3.05) is None
+
+
+def test_measured_velocities_are_averaged_and_forgotten():
+    measured = MeasuredVelocity(0.1)
+    assert measured.at(0.0) is None
+    for k in range(4):
+        measured.add(np.array([float(k), 0.0, 0.0]), 0.04 * k)
+    assert measured.at(0.12)[0] == pytest.approx(2.0)
+    assert measured.at(1.0) is None
+    measured.add(np.array([7.0, 0.0, 0.0]), 0.05)
+    assert measured.at(0.05)[0] == 7.0

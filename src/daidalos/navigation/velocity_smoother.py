@@ -1,11 +1,15 @@
 """Velocity smoother: limits on velocity and acceleration, dead band and timeout."""
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
 
 from daidalos.common.arrays import Array
 from daidalos.common.parameters import ParameterError, Parameters, parameter
+
+_MAX_AGE_S = 0.5
+"""Age [s] from which a measured velocity is not that of the robot any more."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,11 @@ class VelocitySmoother:
         self._commanded_at: float | None = None
         self._last = np.zeros(3)
 
+    @property
+    def is_moving(self) -> bool:
+        """Whether the last velocity was not zero."""
+        return bool(self._last.any())
+
     def command(self, velocity: Array, now: float) -> None:
         """Set the wanted velocity (x, y, yaw); one that is not finite means stop."""
         self._command = velocity.copy() if np.isfinite(velocity).all() else np.zeros(3)
@@ -76,8 +85,8 @@ class VelocitySmoother:
         p = self.parameters
         if self._commanded_at is None:
             return None
-        timed_out = now - self._commanded_at > p.velocity_timeout
-        if timed_out and not self._last.any():
+        timed_out = not 0.0 <= now - self._commanded_at <= p.velocity_timeout  # before it: the clock was set back
+        if timed_out and not self.is_moving:
             return None
         wanted = np.zeros(3) if timed_out else np.clip(self._command, p.min_velocity, p.max_velocity)
         closed = p.feedback == "CLOSED_LOOP" and measured is not None
@@ -98,3 +107,32 @@ class VelocitySmoother:
             share = np.full(3, share.min())
         reached: Array = present + share * change
         return reached
+
+
+class MeasuredVelocity:
+    """Mean of the velocities that were measured lately.
+
+    Parameters
+    ----------
+    duration : float
+        Time over which they are averaged [s].
+    """
+
+    def __init__(self, duration: float) -> None:
+        self.duration = duration
+        self._samples: deque[tuple[float, Array]] = deque()
+
+    def add(self, velocity: Array, now: float) -> None:
+        """Add a velocity (x, y, yaw) that was measured at a time [s]."""
+        if self._samples and now < self._samples[-1][0]:  # the clock was set back
+            self._samples.clear()
+        self._samples.append((now, velocity))
+        while now - self._samples[0][0] > self.duration:
+            self._samples.popleft()
+
+    def at(self, now: float) -> Array | None:
+        """Return the mean, None where nothing was measured in the last half second."""
+        if not self._samples or not 0.0 <= now - self._samples[-1][0] <= _MAX_AGE_S:
+            return None
+        mean: Array = np.mean([velocity for _, velocity in self._samples], axis=0)
+        return mean

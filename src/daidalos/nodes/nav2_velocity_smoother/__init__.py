@@ -1,0 +1,3 @@
+"""Velocity smoother between what commands a robot and what drives it."""
+
+COMPONENTS = {"VelocitySmoother": "velocity_smoother:VelocitySmootherNode"}
