@@ -24,6 +24,7 @@ ALLOWED = {
     "nodes/gazebo_ros/_pacing.py": "the pace of simulated time in real time",
     "nodes/gazebo_ros/gzserver.py": "the report of how fast simulated time passes, once a second of real time",
     "nodes/gazebo_ros/spawn_entity.py": "how long a person waits for a simulator whose time may stand still",
+    "nodes/hector_mapping/hector_mapping.py": "the computing time of a scan, where output_timing asks for it",
     "nodes/joy/_node.py": "when to look for a device again",
     "nodes/keyboard.py": "how long a person has to press a key",
     "nodes/nav2_planner/planner_server.py": "the computing time that the result of a plan reports",

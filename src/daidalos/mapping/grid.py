@@ -94,8 +94,8 @@ class ScanGrid:
 
     def _trace(self, cloud: Cloud, pose: Array, sign: int) -> None:
         placed = np.array(pose, dtype=np.float64)
-        self._make_room(_bounds(cloud.ends, cloud.cleared, cloud.origin, placed, self.resolution))
-        _count(
+        self._make_room(beam_bounds(cloud.ends, cloud.cleared, cloud.origin, placed, self.resolution))
+        count_beams(
             cloud.ends,
             cloud.origin,
             placed,
@@ -106,7 +106,7 @@ class ScanGrid:
             sign,
             True,
         )
-        _count(
+        count_beams(
             cloud.cleared,
             cloud.origin,
             placed,
@@ -157,7 +157,7 @@ def _copy_known(old: Counts, new: Counts, row: int, column: int) -> None:
 
 
 @compiled
-def _bounds(points: Array, cleared: Array, origin: Array, pose: Array, resolution: float) -> NDArray[np.int64]:
+def beam_bounds(points: Array, cleared: Array, origin: Array, pose: Array, resolution: float) -> NDArray[np.int64]:
     """Return the first and last column and row that the beams touch: left, bottom, right, top."""
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     x = pose[0] + cosine * origin[0] - sine * origin[1]
@@ -181,7 +181,7 @@ def _bounds(points: Array, cleared: Array, origin: Array, pose: Array, resolutio
 
 
 @compiled
-def _count(
+def count_beams(
     ends: Array,
     origin: Array,
     pose: Array,

@@ -392,7 +392,8 @@ def test_launch_files_of_the_tutorial(ran, tmp_path, monkeypatch):
         printed += more
     assert len(files) == 7
     assert f"world {share}/tb3_gazebo/worlds/arena_2018.world" in printed
-    assert nodes["slam_toolbox/async_slam_toolbox_node"][2]["resolution"] == 0.025
+    assert nodes["hector_mapping/hector_mapping"][2]["map_resolution"] == 0.025
+    assert nodes["hector_mapping/hector_mapping"][2]["map_multi_res_levels"] == 4
     assert nodes["map_server/map_server"][0] == [f"{share}/tb3_navigation/map/arena.yaml"]
     assert nodes["amcl/amcl"][2]["max_particles"] == 2000
     assert nodes["nav2_bringup/move_base"][2]["global_costmap.costmap_common"] == 1

@@ -79,27 +79,6 @@ def _words(arguments: str) -> list[str]:
     return re.findall(r"""(?:\$\([^)]*\)|"[^"]*"|'[^']*'|\S)+""", arguments)
 
 
-_HECTOR_MAPPING = {
-    "map_resolution": "resolution",
-    "map_pub_period": "map_update_interval",
-    "map_update_distance_thresh": "minimum_travel_distance",
-    "map_update_angle_thresh": "minimum_travel_heading",
-    "map_frame": "map_frame",
-    "base_frame": "base_frame",
-    "odom_frame": "odom_frame",
-    "scan_topic": "scan_topic",
-    "pub_map_odom_transform": None,
-    "use_tf_scan_transformation": None,
-    "use_tf_pose_start_estimate": None,
-    "map_size": None,
-    "map_start_x": None,
-    "map_start_y": None,
-    "map_multi_res_levels": None,
-    "update_factor_free": None,
-    "update_factor_occupied": None,
-    "advertise_map_service": None,
-}
-
 _GMAPPING = {
     "delta": "resolution",
     "map_update_interval": "map_update_interval",
@@ -112,7 +91,6 @@ _GMAPPING = {
 NODES: dict[tuple[str, str], NodeMapping] = {
     ("gazebo_ros", "spawn_model"): NodeMapping("gazebo_ros", "spawn_entity.py", arguments=_spawn),
     ("gmapping", "slam_gmapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _GMAPPING),
-    ("hector_mapping", "hector_mapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _HECTOR_MAPPING),
     ("joint_state_publisher_gui", "joint_state_publisher_gui"): NodeMapping(
         "joint_state_publisher_gui", "joint_state_publisher_gui"
     ),
