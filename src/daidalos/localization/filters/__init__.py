@@ -1,0 +1,1 @@
+"""Filters that fuse odometry, poses, velocities and inertial measurements into one state."""
