@@ -131,6 +131,9 @@ def test_measurements_that_cannot_be_used_are_named(stage: Set) -> None:
     bench.odometry(variance=-1.0)
     bench.odometry(x=math.nan)
     assert not bench.states
+    ahead = Odometry()
+    ahead.header.frame_id, ahead.header.stamp.sec = "odom", bench.stage.stamp.sec + 1000
+    bench.publishers["odom"].publish(ahead)
     bench.odometry(x=1.0)
     bench.odometry(x=500.0)
     bench.stage.step_until(lambda: bool(bench.warnings("beyond its rejection threshold")))
@@ -138,6 +141,7 @@ def test_measurements_that_cannot_be_used_are_named(stage: Set) -> None:
     assert len(bench.warnings("elsewhere")) == 1
     assert bench.warnings("covariance is not finite")
     assert bench.warnings("pose is not finite")
+    assert len(bench.warnings("ahead of the clock")) == 1
 
 
 def test_a_pose_is_set_and_processing_is_toggled(stage: Set) -> None:

@@ -48,6 +48,9 @@ _MESSAGES: dict[str, Any] = {
     "twist": TwistWithCovarianceStamped,
     "imu": Imu,
 }
+MAX_AHEAD = 1.0
+"""How far [s] ahead of the clock a measurement may be and wait for its time."""
+
 _SET_VARIANCE = 1e-6
 """Variance of the velocities and accelerations, which are zero, of a pose that was set."""
 
@@ -138,6 +141,9 @@ class FilterNode(Node):
             return
         time = seconds(message.header.stamp) or self._now
         if time < self._set_at:
+            return
+        if time > self._now + MAX_AHEAD:
+            self._refuse(source, f"its stamp is more than {MAX_AHEAD:g} s ahead of the clock; see use_sim_time")
             return
         if time < self._times.get(source.name, -math.inf):
             self._refuse(source, "it is older than the one before it")
