@@ -53,6 +53,6 @@ def _size_mb(files: Iterator[Path]) -> float:
     sizes = [
         path.stat().st_size * (1.0 + BYTECODE_PER_SOURCE * (path.suffix == ".py"))
         for path in files
-        if path.suffix != ".pyc" and path.is_file()
+        if "__pycache__" not in path.parts and path.is_file()
     ]
     return sum(sizes) / 1e6

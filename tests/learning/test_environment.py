@@ -38,6 +38,9 @@ def test_gymnasium_accepts_it_and_seeds_are_honoured(motion: str) -> None:
         observation, _ = env.reset(seed=seed)
         return [observation["lidar"].tobytes(), *(env.step(action)[0]["lidar"].tobytes() for action in actions)]
 
+    for again in range(30):  # wherever the robot was before, and that may be beyond the walls
+        assert env.reset(seed=again)[1]["state"].x == env.reset(seed=again)[1]["state"].x
+        env.reset()
     assert episode(1) == episode(1)
     assert episode(1) != episode(2)
 

@@ -67,6 +67,8 @@ class SimulatedRobot:
         self._camera = self._find(Camera, "camera") if camera else None
         self._command = next((t for t, kind in self.simulation.subscriptions.items() if kind is TwistCommand), None)
         self.joints = [self._instance.joint(name) for name in joints]
+        self.extent = self._extent_of_world()
+        """Half of the world's extent [m], of its collisions."""
         self._begin = self.simulation.save()
         self._velocity = (0.0, 0.0)
         self._pose = self._instance.pose
@@ -82,16 +84,15 @@ class SimulatedRobot:
         """Whether it takes velocities."""
         return self._command is not None
 
-    @property
-    def extent(self) -> float:
-        """Half of the world's extent [m], of its collisions."""
-        corners = [self.simulation.bounds(name) for name in self.simulation.models]
-        return max((float(np.abs(corner[:, :2]).max()) for corner in map(np.array, corners)), default=1.0)
-
     def image_shape(self) -> tuple[int, ...]:
         """Return the shape of the camera's images."""
         image = self.image()
         return tuple(np.asarray(image).shape)
+
+    def _extent_of_world(self) -> float:
+        """Return half of the extent of the collisions without the robot's [m]: it shall not depend on where that is."""
+        corners = [self.simulation.bounds(name) for name in self.simulation.models if name != self.name]
+        return max((float(np.abs(corner[:, :2]).max()) for corner in map(np.array, corners)), default=1.0)
 
     def _find(self, kind: type, word: str) -> Any:
         found = next((c for c in self._instance.components if isinstance(c, kind)), None)

@@ -112,8 +112,8 @@ def test_prints_what_ros2_prints(number: int, results: dict[int, Result]) -> Non
     result = results[number]
     words = transcript["command"]
     assert _normalised(words, result.out) == _normalised(words, transcript["stdout"])
-    # Where a name is wrong, we say which names are near.
-    err = re.sub(r"^Did you mean .*\n?", "", result.err, flags=re.MULTILINE)
+    # Where a name is wrong, we say which names are near, or which there are.
+    err = re.sub(r"^(Did you mean|There are these) .*\n?", "", result.err, flags=re.MULTILINE)
     assert _normalised(words, err) == _normalised(words, transcript["stderr"])
     assert result.status == transcript["exit"]
 
