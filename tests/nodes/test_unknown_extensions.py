@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -83,7 +84,7 @@ def test_the_transition_fails_with_one_line_that_names_file_and_line(
     made = stage({node: values}).add(server())
     assert made.trigger_configure() == TransitionCallbackReturn.FAILURE
     assert made.current_state.label == "unconfigured"
-    printed = capfd.readouterr().err
+    printed = _wait_for_message(capfd, message)
     line = next(line for line in printed.splitlines() if message in line)
     assert "parameters.yaml:" in line
     assert "Traceback" not in printed
@@ -98,8 +99,7 @@ def test_a_tree_with_an_unknown_node_fails_the_transition(
     tree.write_text('<root BTCPP_format="4">\n<BehaviorTree ID="Main">\n<Spim/>\n</BehaviorTree></root>')
     made = stage({"/bt_navigator": {"default_nav_to_pose_bt_xml": str(tree)}}).add(BtNavigator())
     assert made.trigger_configure() == TransitionCallbackReturn.FAILURE
-    printed = capfd.readouterr().err
-    assert f"{tree}:3: '<Spim>': there is no tree node 'Spim'; did you mean 'Spin'" in printed
+    printed = _wait_for_message(capfd, f"{tree}:3: '<Spim>': there is no tree node 'Spim'; did you mean 'Spin'")
     assert "Traceback" not in printed
 
 
@@ -113,3 +113,14 @@ def test_a_component_of_which_the_build_left_out_the_cpp_is_told_so(
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     with pytest.raises(ExtensionError, match="of package 'cpp_pubsub' was left out of the build: talker_component"):
         find_component("cpp_pubsub", "cpp_pubsub::Talker")
+
+
+def _wait_for_message(capfd: pytest.CaptureFixture[str], message: str, timeout_s: float = 30.0) -> str:
+    """Return what was printed on standard error until a message, which another thread may print, is in it."""
+    printed = ""
+    deadline = time.monotonic() + timeout_s
+    while message not in printed:
+        assert time.monotonic() < deadline, f"no '{message}' in:\n{printed}"
+        printed += capfd.readouterr().err
+        time.sleep(0.01)
+    return printed
