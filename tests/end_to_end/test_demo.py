@@ -1,12 +1,18 @@
 """`daidalos demo` as users run it: on trial, with other commands beside it, and ended at any moment."""
 
 import json
+import os
 import re
 import socket
 import sys
+from typing import Any
 
 import pytest
+from geometry_msgs.msg import Point, Pose, PoseStamped
+from nav2_msgs.action import NavigateToPose
+from std_msgs.msg import Header
 
+from daidalos.testing.scenario import ScenarioFailure
 from end_to_end.processes import DAIDALOS, ROS2, Command, finished
 from places import REPOSITORY
 
@@ -114,20 +120,15 @@ def test_the_examples_work_on_it(domain: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(480)
-@pytest.mark.parametrize(
-    ("x", "y", "why"),
-    [(50.0, 0.0, "outside of the map"), (-1.6, 2.2, "occupied|obstacle|blocked|no path")],
-    ids=["outside", "in a wall"],
-)
-def test_a_goal_that_cannot_be_is_refused_with_the_reason(domain: int, x: float, y: float, why: str) -> None:
-    with Command(*DEMO, "--no-browser", domain=domain) as demo:
-        demo.wait_for_line("look_around.*finished")
-        goal = f"{{pose: {{header: {{frame_id: map}}, pose: {{position: {{x: {x}, y: {y}}}}}}}}}"
-        words = ["action", "send_goal", "/navigate_to_pose", "nav2_msgs/action/NavigateToPose", goal]
-        done = finished(*ROS2, *words, domain=domain, timeout=120)
-        assert "Goal finished with status: ABORTED" in done.stdout
-        assert re.search(why, done.stdout)
-        echo = ["topic", "echo", "--once", "/odom", "--field", "pose.pose.position.x"]
-        travelled = float(finished(*ROS2, *echo, domain=domain).stdout.split()[0])
+@pytest.mark.scenario(timeout=480, seed=1)
+@pytest.mark.skipif(os.name == "nt", reason="the scenarios end programs by signals")
+def test_goals_that_cannot_be_are_refused_with_the_reason(launch: Any, topic: Any, action: Any) -> None:
+    launch("daidalos_demo", "demo.launch.py", studio=False).prints("look_around.*finished", within=120.0)
+    odometry = topic("/odom")
+    navigate = action("/navigate_to_pose", NavigateToPose)
+    for x, y, why in ((50.0, 0.0, "outside of the map"), (-1.6, 2.2, "occupied|obstacle|blocked|no path")):
+        goal = PoseStamped(header=Header(frame_id="map"), pose=Pose(position=Point(x=x, y=y)))
+        with pytest.raises(ScenarioFailure, match=f"was aborted: .*({why})"):
+            navigate.send(pose=goal, within=120.0)
+        travelled = odometry.wait(10.0).pose.pose.position.x
         assert abs(travelled) < 0.1, "the robot has to stay where it was"
-        demo.interrupt()
