@@ -194,3 +194,10 @@ def test_corners_as_a_list_of_numbers(stage: Set) -> None:
     bench.drive(0.2)
     assert bench.speed == 0.0
     assert bench.states[-1].polygon_name == "zone"
+
+
+def test_a_zone_with_an_unknown_source_fails_the_transition(stage: Set, capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(AssertionError):
+        Bench(stage, STOP | {"sources_names": ["senser"]})
+    names = "'zone.sources_names' of /collision_monitor names 'senser', which is no observation source"
+    assert f"{names}; did you mean 'sensor'?" in capfd.readouterr().err

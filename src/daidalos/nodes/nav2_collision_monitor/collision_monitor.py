@@ -14,7 +14,8 @@ from rclpy.parameter import Parameter
 from tf2_ros import Buffer, TransformListener
 
 from daidalos.common.arrays import Array
-from daidalos.common.parameters import Parameters, parameter, per_name
+from daidalos.common.parameters import ParameterError, Parameters, parameter, per_name
+from daidalos.common.suggestions import hint
 from daidalos.navigation.collision_monitor import Zone, ZoneParameters
 from daidalos.nodes.conversions import twist_message
 from daidalos.nodes.managed import ManagedNode
@@ -60,6 +61,14 @@ class CollisionMonitorParameters(Parameters):
         (), "Names of the sources.", not_empty=True, unique=True, read_only=True
     )
     sources: Mapping[str, SourceParameters] = per_name(SourceParameters, by="observation_sources", at="")
+
+    def check(self) -> None:
+        """Refuse zones with a source that does not exist: they would see nothing."""
+        for name, zone in self.zones.items():
+            for source in zone.sources_names:
+                if source not in self.sources:
+                    problem = f"names '{source}', which is no observation source{hint(source, self.sources)}"
+                    raise ParameterError(f"{name}.sources_names", problem)
 
 
 class CollisionMonitorNode(ManagedNode):
