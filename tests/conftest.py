@@ -30,6 +30,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("slow")
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Tear down what was kept for a test that another process has stolen meanwhile (``--dist worksteal``).
+
+    The test before was told that the stolen one follows, so that its module or class was kept; without this the next
+    test of another module fails with "previous item was not torn down properly".
+    """
+    item.session._setupstate.teardown_exact(item)
+
+
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real logs, worlds and test vectors; a test that needs it is skipped where it is absent."""
