@@ -40,8 +40,8 @@ class LogError(MappingError):
         self.path = path
 
 
-class RelationsError(MappingError):
-    """Error of a file of ground-truth relations.
+class LineError(MappingError):
+    """Error of a line of a text file.
 
     Attributes
     ----------
@@ -57,18 +57,9 @@ class RelationsError(MappingError):
         self.line = line
 
 
-class GraphFileError(MappingError):
-    """Error of a file of a pose graph or a trajectory.
+class RelationsError(LineError):
+    """Error of a file of ground-truth relations."""
 
-    Attributes
-    ----------
-    path : Path
-        The file.
-    line : int or None
-        Number of the line, from 1.
-    """
 
-    def __init__(self, path: Path, line: int | None, problem: str) -> None:
-        super().__init__(problem, Location(str(path), line))
-        self.path = path
-        self.line = line
+class GraphFileError(LineError):
+    """Error of a file of a pose graph or a trajectory."""

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from daidalos.common.parameters import ParameterError, parameter
 from daidalos.mapping.config import SlamConfig
-
-if TYPE_CHECKING:
-    pass
 
 _SOLVER = "poses are solved by a sparse Levenberg-Marquardt of its own, with a Cauchy kernel on loop closures"
 _SEARCH = "the search is exact and its result refined to lines, so no grid limits it"
@@ -32,6 +28,7 @@ WITHOUT_EFFECT = {
     "loop_match_maximum_variance_coarse": "loop closures are checked by the lines that their points lie on",
     "link_scan_maximum_distance": "a scan is linked to the last one and to the places that it recognizes",
     "stack_size_to_use": "files are written without recursion",
+    "mode": "the executable decides whether the node maps or localizes",
 }
 """Parameters of slam_toolbox that nothing here needs, and why."""
 
@@ -43,10 +40,6 @@ class SlamToolboxParameters(SlamConfig):
     match_every_scan: bool = parameter(
         True, "Whether the scans in between correct the pose as well, without being added to the map."
     )
-    mode: str = parameter(
-        "mapping", "What the parameter file is meant for; the executable decides.", choices=("mapping", "localization"),
-        read_only=True,
-    )  # fmt: skip
     map_frame: str = parameter("map", "Frame of the map.", not_empty=True, read_only=True)
     odom_frame: str = parameter("odom", "Frame of the odometry.", not_empty=True, read_only=True)
     base_frame: str = parameter("base_footprint", "Frame of the robot's base.", not_empty=True, read_only=True)
