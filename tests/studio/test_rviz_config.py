@@ -92,6 +92,11 @@ def test_displays_of_ros_1(tmp_path):
     assert arrangement.followed == "base_link"
 
 
+def test_panels_of_plugins_that_the_page_has_are_opened(tmp_path):
+    panels = "Panels:\n  - Class: rviz_common/Displays\n  - Class: slam_toolbox::SlamToolboxPlugin\n  - 3\n"
+    assert read(tmp_path, panels + ROS_2).panels == ("slam_toolbox",)
+
+
 @pytest.mark.parametrize(
     ("text", "error"),
     [

@@ -117,6 +117,8 @@ class Arrangement:
         Titles and contents of the tabs with plots.
     span : float
         Time span of plots over time [s]; 0: the page's default.
+    panels : tuple of str
+        Panels that the page opens besides its default ones.
     left_out : tuple of str
         What the file asks for and the studio does not have, for a message to the user.
     source : str
@@ -129,6 +131,7 @@ class Arrangement:
     followed: str = ""
     tabs: tuple[tuple[str, Plot | Split], ...] = ()
     span: float = 0.0
+    panels: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     source: str = ""
 

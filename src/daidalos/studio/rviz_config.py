@@ -14,6 +14,7 @@ from daidalos.studio.arrangement import Arrangement, ArrangementError, Display, 
 
 _FIELD_OF_VIEW = math.radians(45)
 _HALF_HEIGHT_PX = 400.0  # of a window, which the file does not tell in the view's own measure
+_PANELS = {"slam_toolbox::SlamToolboxPlugin": "slam_toolbox"}
 _AXIS_LENGTH = 0.2  # of a frame for a marker scale of 1 [m]
 
 _Node = Mapping[str, Any]
@@ -59,9 +60,18 @@ def parse_rviz(text: str, name: str) -> Arrangement:
         displays=displays,
         view=_view(current),
         followed="" if frame.startswith("<") else frame,
+        panels=tuple(_panels(document.get("Panels"))),
         left_out=tuple(f"{each.name} ({each.type or 'without a class'})" for each in displays if not is_known(each)),
         source=text,
     )
+
+
+def _panels(nodes: Any) -> Iterator[str]:
+    """Yield the page's panels that stand for panels of RViz's plugins."""
+    for node in nodes if isinstance(nodes, list) else ():
+        panel = _PANELS.get(str(_map(node).get("Class")))
+        if panel:
+            yield panel
 
 
 def is_known(display: Display) -> bool:

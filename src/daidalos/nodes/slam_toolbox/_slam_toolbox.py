@@ -534,6 +534,7 @@ class SlamToolbox(ManagedNode):
         with self._lock:
             self._slam.move_keys(self._moved)
             self._map_to_odom = self._slam.map_to_odom
+        self.get_logger().info(f"optimized the graph with {len(self._moved)} key scans moved by hand")
         self._moved.clear()
         self._drawn_keys = -1
         self._show_movable()

@@ -7,6 +7,7 @@ const NOTHING: Arrangement = {
   followed: "",
   tabs: [],
   span: 0,
+  panels: [],
   leftOut: [],
   source: "",
 };

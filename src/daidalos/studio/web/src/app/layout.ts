@@ -57,6 +57,7 @@ export class Layout {
       disableFloatingGroups: true,
     });
     this.restore();
+    this.addAsked();
     if (front) {
       this.open(front);
     }
@@ -184,6 +185,17 @@ export class Layout {
       change();
     } finally {
       this.isRearranging = false;
+    }
+  }
+
+  /** Open the panels that a file of RViz has besides the default ones. */
+  private addAsked(): void {
+    for (const id of this.studio.arrangement?.panels ?? []) {
+      if (!this.dock.panels.some((panel) => panel.view.contentComponent === id)) {
+        const beside = this.dock.getPanel("displays");
+        const position = beside ? ({ referencePanel: beside.id, direction: "below" } as const) : undefined;
+        this.dock.addPanel({ id, component: id, title: panelType(id).title, ...(position ? { position } : {}) });
+      }
     }
   }
 

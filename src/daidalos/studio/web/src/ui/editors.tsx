@@ -123,18 +123,21 @@ export function RangeField({ value, min, max, step = 0, unit, label, disabled = 
 interface TextProps {
   value: string;
   label: string;
+  /** Shown while it is empty. */
+  placeholder?: string;
   disabled?: boolean;
   onChange(value: string): void;
 }
 
 /** A text; changes are reported when it is entered or loses the focus. */
-export function TextField({ value, label, disabled = false, onChange }: TextProps) {
+export function TextField({ value, label, placeholder = "", disabled = false, onChange }: TextProps) {
   return (
     <input
       class="field"
       type="text"
       aria-label={label}
       spellcheck={false}
+      placeholder={placeholder}
       disabled={disabled}
       value={value}
       onChange={(event) => onChange(event.currentTarget.value)}
