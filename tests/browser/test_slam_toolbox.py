@@ -79,7 +79,9 @@ def test_maps_are_saved_loaded_and_corrected(
         _enter(browser, "File, without suffix", str(tmp_path / "nothing"))
         browser.click_on("[data-slam=deserialize_map]")
         _wait_for_report(browser, "nothing.posegraph")
-        assert "nothing.posegraph" in browser.evaluate("document.querySelector('.slam-reports .error-text').textContent")
+        assert "nothing.posegraph" in browser.evaluate(
+            "document.querySelector('.slam-reports .error-text').textContent"
+        )
         _enter(browser, "File, without suffix", str(saved))
         browser.click_on("[data-slam=deserialize_map]")
         _wait_for_report(browser, "read a pose graph of 4 scans")
