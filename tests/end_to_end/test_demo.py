@@ -4,7 +4,6 @@ import json
 import os
 import re
 import socket
-import sys
 from typing import Any
 
 import pytest
@@ -12,6 +11,7 @@ from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav2_msgs.action import NavigateToPose
 from std_msgs.msg import Header
 
+from daidalos.testing.programs import Nodes, RunningNode
 from daidalos.testing.scenario import ScenarioFailure
 from end_to_end.processes import DAIDALOS, ROS2, Command, finished
 from places import REPOSITORY
@@ -97,33 +97,13 @@ def test_other_commands_see_the_running_demonstration(domain: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(480)
-def test_the_examples_work_on_it(domain: int) -> None:
-    with Command(*DEMO, "--no-browser", domain=domain) as demo:
-        demo.wait_for_line("look_around.*finished")
-        with Command(sys.executable, str(EXAMPLES / "nearest_wall.py"), domain=domain) as example:
-            example.wait_for_line(r"\d\.\d\d m at [+-]\d+ deg")
-            example.interrupt()
-            example.assert_no_traceback()
-        with Command(sys.executable, str(EXAMPLES / "keep_distance.py"), domain=domain) as example:
-            velocity = [*ROS2, "topic", "echo", "/odom", "--field", "twist.twist.linear.x"]
-            with Command(*velocity, domain=domain) as echo:
-                echo.wait_for_line(r"^0\.1[89]|^0\.2")
-                echo.interrupt()
-            example.interrupt()
-            example.assert_no_traceback()
-        with Command(sys.executable, str(EXAMPLES / "patrol.py"), domain=domain) as example:
-            example.wait_for_line(r"\(1.2, -1.6\): reached")
-            example.interrupt()
-            example.assert_no_traceback()
-        demo.interrupt()
-
-
-@pytest.mark.slow
-@pytest.mark.timeout(480)
 @pytest.mark.scenario(timeout=480, seed=1)
 @pytest.mark.skipif(os.name == "nt", reason="the scenarios end programs by signals")
-def test_goals_that_cannot_be_are_refused_with_the_reason(launch: Any, topic: Any, action: Any) -> None:
-    launch("daidalos_demo", "demo.launch.py", studio=False).prints("look_around.*finished", within=120.0)
+def test_goals_that_cannot_be_are_refused_and_the_examples_work(
+    launch: Any, nodes: Nodes, topic: Any, action: Any
+) -> None:
+    demo = launch("daidalos_demo", "demo.launch.py", studio=False, seed=1)
+    demo.prints("look_around.*finished", within=120.0)
     odometry = topic("/odom")
     navigate = action("/navigate_to_pose", NavigateToPose)
     for x, y, why in ((50.0, 0.0, "outside of the map"), (-1.6, 2.2, "occupied|obstacle|blocked|no path")):
@@ -132,3 +112,20 @@ def test_goals_that_cannot_be_are_refused_with_the_reason(launch: Any, topic: An
             navigate.send(pose=goal, within=120.0)
         travelled = odometry.wait(10.0).pose.pose.position.x
         assert abs(travelled) < 0.1, "the robot has to stay where it was"
+
+    example = nodes.script(EXAMPLES / "nearest_wall.py")
+    example.prints(r"\d\.\d\d m at [+-]\d+ deg", within=60.0)
+    _end(example)
+    example = nodes.script(EXAMPLES / "keep_distance.py")
+    odometry.field("twist.twist.linear.x").eventually(between=(0.18, 0.3), within=60.0)
+    _end(example)
+    example = nodes.script(EXAMPLES / "patrol.py")
+    example.prints(r"\(1.2, -1.6\): reached", within=240.0)
+    _end(example)
+
+
+def _end(example: RunningNode) -> None:
+    """End an example as Ctrl-C does, and require that it prints no traceback."""
+    example.interrupt()
+    example.exits(within=30.0)
+    assert not [line for line in example.lines if "Traceback" in line or "KeyboardInterrupt" in line]

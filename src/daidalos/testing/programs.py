@@ -98,6 +98,11 @@ class RunningNode:
         """Whether it runs."""
         return self.program.status is None
 
+    @property
+    def lines(self) -> list[str]:
+        """Whole lines that it has printed so far; none of a program that a launch file has started."""
+        return [] if self._output is None else list(self._output.lines)
+
     def kill(self) -> None:
         """End it as SIGKILL does."""
         self._end(getattr(signal, "SIGKILL", 9))
