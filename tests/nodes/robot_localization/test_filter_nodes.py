@@ -123,6 +123,30 @@ def test_gravity_is_taken_from_a_sensor_on_its_side(stage: Set) -> None:
     np.testing.assert_allclose(bench.node._filter.state[12:], [0.5, 0.0, 0.0], atol=1e-6)
 
 
+@pytest.mark.parametrize(("smooth", "expected"), [(True, 0.0), (False, 0.5)])
+def test_a_late_measurement_is_taken_in_at_its_time(stage: Set, smooth: bool, expected: float) -> None:
+    """A robot at 1 m/s is seen at its start by a slow sensor; taken for the present, that holds it back."""
+    bench = Bench(
+        stage, odom0="odom", odom0_config=uses("vx"), pose0="pose", pose0_config=uses("x"),
+        smooth_lagged_data=smooth, history_length=5.0,
+        initial_estimate_covariance=[1.0] * 15,
+    )  # fmt: skip
+    start = bench.stage.stamp
+    for _ in range(21):
+        bench.odometry(vx=1.0)
+    way = bench.position.x
+    late = PoseWithCovarianceStamped()
+    late.header.stamp, late.header.frame_id = start, "odom"
+    late.pose.covariance = (1e-6 * np.eye(6)).ravel()
+    bench.poses.publish(late)
+    bench.stage.step()
+    bench.odometry(vx=1.0)
+    bench.odometry(vx=1.0)
+    assert way > 0.9
+    held_back = way - bench.position.x
+    assert (held_back > expected) if expected else (held_back < 0.2)
+
+
 def test_measurements_that_cannot_be_used_are_named(stage: Set) -> None:
     bench = Bench(stage, odom0="odom", odom0_config=uses("x", "vx"), odom0_pose_rejection_threshold=3.0)
     for _ in range(3):

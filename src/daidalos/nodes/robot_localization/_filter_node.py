@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 import itertools
 import math
+from collections import deque
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -29,6 +30,7 @@ from tf2_ros import Buffer, TransformBroadcaster, TransformException, TransformL
 from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
 from daidalos.localization.errors import LocalizationError
+from daidalos.localization.filters.history import FilterHistory
 from daidalos.localization.filters.kalman import Control, KalmanFilter, Measurement, square
 from daidalos.localization.filters.model import ACCELERATION
 from daidalos.nodes.parameters import declare, declare_without_effect
@@ -50,6 +52,9 @@ _MESSAGES: dict[str, Any] = {
 }
 MAX_AHEAD = 1.0
 """How far [s] ahead of the clock a measurement may be and wait for its time."""
+
+_MAX_COMMANDS = 1000
+"""How many commands are kept for measurements that come late."""
 
 _SET_VARIANCE = 1e-6
 """Variance of the velocities and accelerations, which are zero, of a pose that was set."""
@@ -81,7 +86,9 @@ class FilterNode(Node):
         self._reports = ScanReports(self)
         self._converters: list[Converter] = []
         self._order = itertools.count()
-        self._command: tuple[float, Array] | None = None
+        self._history = FilterHistory(p.history_length) if p.smooth_lagged_data else None
+        # As many as the history may need.
+        self._commands: deque[tuple[float, Array]] = deque(maxlen=_MAX_COMMANDS if p.smooth_lagged_data else 1)
         self._forget()
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
@@ -91,6 +98,8 @@ class FilterNode(Node):
         for source in sources:
             self._listen(source)
         self._offer()
+        if p.smooth_lagged_data and not p.history_length:
+            self.get_logger().warning("smooth_lagged_data has no effect without a history_length above 0")
         self.create_timer(1.0 / p.frequency, self._cycle)
 
     def _control(self) -> Control | None:
@@ -130,7 +139,9 @@ class FilterNode(Node):
         self._waiting: list[tuple[float, int, str, Measurement]] = []
         self._times: dict[str, float] = {}
         self._set_at, self._cycle_at, self._published_at = -math.inf, -math.inf, -math.inf
-        self._command = None
+        self._commands.clear()
+        if self._history is not None:
+            self._history.clear()
         for converter in self._converters:
             converter.forget()
 
@@ -183,15 +194,16 @@ class FilterNode(Node):
             self._reports.report("command", "a command on cmd_vel is not used: it is not finite")
             return
         stamp = seconds(message.header.stamp) if self._settings.stamped_control else 0.0
-        self._command = (stamp or self._now, command)
+        self._commands.append((stamp or self._now, command))
 
     def _set_command(self, time: float) -> None:
-        """Give the filter the command that counts at a time."""
-        if self._command is None:
+        """Give the filter the command that counts at a time: the last one until then, else the first one."""
+        if not self._commands:
             return
+        sent, command = next((one for one in reversed(self._commands) if one[0] <= time), self._commands[0])
         timeout = self._settings.control_timeout
-        is_old = 0 < timeout < time - self._command[0]
-        self._filter.command = np.zeros(6) if is_old else self._command[1]
+        is_old = 0 < timeout < time - sent
+        self._filter.command = np.zeros(6) if is_old else command
 
     # The cycle.
 
@@ -219,11 +231,26 @@ class FilterNode(Node):
     def _integrate(self, now: float) -> None:
         """Take in the measurements up to now in the order of their times."""
         while self._waiting and self._waiting[0][0] <= now:
+            self._rewind_to(self._waiting[0][0])
             time, _, name, measurement = heapq.heappop(self._waiting)
             self._set_command(time)
             if not self._filter.process(measurement):
                 self._reports.report(f"{name} rejected", f"a measurement of {name} is beyond its rejection threshold")
             self._flatten()
+            if self._history is not None:
+                self._history.record(name, measurement, self._filter)
+
+    def _rewind_to(self, time: float) -> None:
+        """Set the filter back to a time before its own, where there is a history; what came since waits again."""
+        if self._history is None or self._filter.time is None or time >= self._filter.time:
+            return
+        undone = self._history.rewind(self._filter, time)
+        if undone is None:
+            text = f"a measurement is {self._filter.time - time:.2f} s late, which history_length does not cover"
+            self._reports.report("history", f"{text}: it corrects the present state")
+            return
+        for name, measurement in undone:
+            heapq.heappush(self._waiting, (measurement.time, next(self._order), name, measurement))
 
     def _flatten(self) -> None:
         """Keep a robot on a plane there."""

@@ -56,6 +56,10 @@ class FilterParameters(Parameters):
     dynamic_process_noise_covariance: bool = parameter(
         False, "Whether the noise of the pose grows with the speed, and is zero for a robot that stands."
     )
+    smooth_lagged_data: bool = parameter(
+        False, "Whether a late measurement is taken in at its time, and those after it again."
+    )
+    history_length: float = parameter(0.0, "How late such a measurement may be.", unit="s", minimum=0.0)
     use_control: bool = parameter(False, "Whether velocities on cmd_vel move the prediction.")
     stamped_control: bool = parameter(False, "Whether cmd_vel is TwistStamped instead of Twist.")
     control_timeout: float = parameter(
@@ -184,8 +188,6 @@ WITHOUT_EFFECT = {
     "debug_out_file": "there is no debug file",
     "tf_prefix": "frames have their whole names",
     "transform_timeout": "transforms are not waited for; the newest counts where that of the time is missing",
-    "smooth_lagged_data": "late measurements correct the present state",
-    "history_length": "late measurements correct the present state",
     "reset_on_time_jump": "time that goes back always resets the filter",
 }
 """Parameters that do nothing here, with the reason."""
