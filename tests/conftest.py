@@ -11,7 +11,7 @@ from typing import IO
 import hypothesis
 import pytest
 
-from places import REPOSITORY
+from places import MACHINE_TEMPORARY, REPOSITORY
 
 # Options meant for this run are not for the pytest that a test starts, which may know other plugins.
 os.environ.pop("PYTEST_ADDOPTS", None)
@@ -50,21 +50,29 @@ def shared_data() -> Path:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _runtime_folder_of_the_run() -> Iterator[None]:
-    """Keep the processes of this run, and those of others on this machine, from finding each other."""
+def _folders_of_the_run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Keep the processes of this run, and those of others on this machine, from finding each other.
+
+    Temporary files of all of them go to one folder, which is deleted with what killed processes left there.
+    """
+    tmp_path_factory.getbasetemp()  # is kept for whoever looks at a failure
     with (
         # Not pytest's own folder: the paths of sockets may not be long.
         tempfile.TemporaryDirectory(prefix="dt-", ignore_cleanup_errors=True) as folder,
         pytest.MonkeyPatch.context() as patch,
     ):
         patch.setenv("XDG_RUNTIME_DIR", folder)
+        temporary = Path(folder, "tmp")
+        temporary.mkdir()
+        patch.setenv("TMPDIR", str(temporary))
+        patch.setattr(tempfile, "tempdir", str(temporary))
         yield
 
 
 @pytest.fixture
 def domain() -> Iterator[int]:
     """A ROS domain that no other test of any run on this machine has at the same time."""
-    folder = Path(tempfile.gettempdir()) / "daidalos-test-domains"
+    folder = MACHINE_TEMPORARY / "daidalos-test-domains"
     folder.mkdir(exist_ok=True)
     for number in (100 + next(_numbers) % 100 for _ in range(100)):
         with (folder / str(number)).open("a") as file:

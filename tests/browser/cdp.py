@@ -17,6 +17,7 @@ import pytest
 from filelock import FileLock
 
 from daidalos.studio.build import build, is_fresh
+from places import MACHINE_TEMPORARY
 
 T = TypeVar("T")
 
@@ -63,7 +64,7 @@ def require_chromium() -> None:
 def require_page() -> None:
     """Build the page where it is not; skip the test where that cannot be done, unless it must be."""
     words: list[str] = []
-    with FileLock(Path(tempfile.gettempdir()) / "daidalos-test-page.lock"):  # tests run in several processes
+    with FileLock(MACHINE_TEMPORARY / "daidalos-test-page.lock"):  # tests run in several processes
         built = is_fresh() or build(words.append)
     if not built:
         text = f"the page cannot be built: {words}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -158,8 +158,10 @@ def opened(path: Path, storage_id: str) -> Iterator[StorageReader]:
     BagError
         When it is missing or cannot be read.
     """
-    with tempfile.TemporaryDirectory(prefix="bag_") as folder:
-        source = decompress_file(path, Path(folder)) if path.name.endswith(ZSTD_SUFFIX) else path
+    with ExitStack() as stack:
+        source = path
+        if path.name.endswith(ZSTD_SUFFIX):
+            source = decompress_file(path, Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="bag_"))))
         try:
             reader = open_reader(source, storage_id or storage_of(path))
         except BagError as error:

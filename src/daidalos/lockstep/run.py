@@ -107,6 +107,9 @@ class Run:
         if number < 0:
             self._interrupts += 1
             if self._interrupts > 1 or not self.programs:
+                from daidalos.common.temporary_files import delete_temporary_files
+
+                delete_temporary_files()
                 os._exit(128 - number)
             self.programs[0].send_signal(-number)
             return

@@ -51,6 +51,7 @@ def main() -> None:
     args = parser.parse_args()
     options = Options.of(args)
 
+    from daidalos.common.temporary_files import delete_temporary_files
     from daidalos.lockstep.run import Run, exit_status
     from daidalos.lockstep.scheduler import LockstepError
 
@@ -66,6 +67,7 @@ def main() -> None:
         status = 1
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
+    delete_temporary_files()
     os._exit(status)  # threads that stand where they stopped would go on
 
 

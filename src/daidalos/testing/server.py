@@ -143,7 +143,11 @@ def _fork(run: Any, data: bytes) -> int:
         os.close(ended)
         nothing = os.open(os.devnull, os.O_RDONLY)
         os.dup2(nothing, 0)
-        os._exit(_carry_out(run, data) & 0xFF)
+        status = _carry_out(run, data)
+        from daidalos.common.temporary_files import delete_temporary_files
+
+        delete_temporary_files()
+        os._exit(status & 0xFF)
     os.close(ending)
     readable, _, _ = _real_select([0, ended], [], [])
     if ended not in readable:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import pathlib
-import tempfile
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +22,7 @@ from launch.utilities.type_utils import (
 from launch.utilities.typing_file_path import FilePath
 
 from daidalos.common.documents import DocumentError, parse_yaml, read_text
+from daidalos.common.temporary_files import write_temporary
 
 if TYPE_CHECKING:
     from launch import LaunchContext
@@ -164,11 +164,7 @@ class ParameterFile:
             raise SubstitutionFailure(
                 f"the parameter file {path} is not YAML after its substitutions were performed: {error.described}"
             ) from error
-        with tempfile.NamedTemporaryFile(
-            "w", prefix="launch_params_", suffix=".yaml", delete=False, encoding="utf-8"
-        ) as file:
-            file.write(text)
-        return pathlib.Path(file.name)
+        return write_temporary(text, "launch_params_", ".yaml")
 
     def cleanup(self) -> None:
         """Delete the temporary files."""

@@ -97,12 +97,17 @@ def _try_out(arguments: argparse.Namespace) -> int:
     if run is None:
         # A domain of its own: the trial neither disturbs nor is disturbed by what runs beside it.
         os.environ.setdefault("ROS_DOMAIN_ID", str(_TRIAL_DOMAIN))
-    launched = _launched(arguments.seed) if run is None else _launched_in(run, arguments.seed)
-    with launched as (process, log):
-        load = _load_recorder(process)
-        with _progress(arguments.json or run is not None) as say:
-            report = _run_trial(arguments, say, process)
-        used = load.stop() if load is not None else None
+    handle, log = _log_file()
+    launched = _launched(arguments.seed, handle) if run is None else _launched_in(run, arguments.seed, handle)
+    try:
+        with launched as process:
+            load = _load_recorder(process)
+            with _progress(arguments.json or run is not None) as say:
+                report = _run_trial(arguments, say, process)
+            used = load.stop() if load is not None else None
+    except KeyboardInterrupt:
+        log.unlink(missing_ok=True)
+        raise
     if report is None:
         what = "the robot did not start" if run is None else "the run ended before the drive did"
         print(f"daidalos demo: {what}; see {log}", file=sys.stderr)
@@ -128,30 +133,28 @@ def _load_recorder(process: subprocess.Popen[bytes] | Child) -> LoadRecorder | N
 
 
 @contextlib.contextmanager
-def _launched(seed: int) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
-    """Run the demo's launch file; its output goes to a file."""
-    handle, log = _log_file()
+def _launched(seed: int, handle: int) -> Iterator[subprocess.Popen[bytes]]:
+    """Run the demo's launch file; its output goes to an open file."""
     command = [sys.executable, "-m", "daidalos.cli.ros2", *_launch_words(seed)]
     with os.fdopen(handle, "wb") as output:
         process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
     guard.watch(process.pid)
     try:
-        yield process, log
+        yield process
     finally:
         _end(process)
         guard.release(process.pid)
 
 
 @contextlib.contextmanager
-def _launched_in(run: Run, seed: int) -> Iterator[tuple[Child, Path]]:
-    """Run the demo's launch file as a program of a lock-step run; its output goes to a file."""
+def _launched_in(run: Run, seed: int, handle: int) -> Iterator[Child]:
+    """Run the demo's launch file as a program of a lock-step run; its output goes to an open file."""
     from daidalos.lockstep.session import Child
 
-    handle, log = _log_file()
     with os.fdopen(handle, "wb") as output:
         child = Child(run, ["ros2", *_launch_words(seed)], lambda fd, data: output.write(data))
         try:
-            yield child, log
+            yield child
         finally:
             child.send_signal(signal.SIGINT)
             child.wait()

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import atexit
-import contextlib
 import os
 import pathlib
-import tempfile
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +15,8 @@ from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 from launch.substitutions import SubstitutionFailure, TextSubstitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+
+from daidalos.common.temporary_files import write_temporary
 
 from ..parameters_type import SomeParameters
 from ..remap_rule_type import SomeRemapRules
@@ -291,11 +290,9 @@ class Node(ExecuteProcess):
         """
         written_in = context.get_locals_as_dict().get("current_launch_file_path")
         node = self.node_name if self.is_node_name_fully_specified() else "/**"
-        with tempfile.NamedTemporaryFile("w", prefix="launch_params_", delete=False, encoding="utf-8") as file:
-            file.write(f"# from: {written_in}\n" if written_in else "")
-            file.write(_dump_yaml({node: {"ros__parameters": params}}, quoted=True))
-        atexit.register(_remove, file.name)
-        return file.name
+        source = f"# from: {written_in}\n" if written_in else ""
+        text = source + _dump_yaml({node: {"ros__parameters": params}}, quoted=True)
+        return str(write_temporary(text, "launch_params_"))
 
     def __expand_remappings(self, context: LaunchContext) -> list[tuple[str, str]]:
         own = [
@@ -347,8 +344,3 @@ def _dump_yaml(value: Any, *, quoted: bool) -> str:
     style = None if quoted else True
     text = yaml.dump(value, Dumper=Dumper, width=float("inf"), default_flow_style=style, sort_keys=False)
     return text if quoted else text.removesuffix("...\n").rstrip("\n")
-
-
-def _remove(path: str) -> None:
-    with contextlib.suppress(OSError):
-        os.unlink(path)

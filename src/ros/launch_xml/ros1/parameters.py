@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import atexit
-import contextlib
-import os
 import pathlib
-import tempfile
 from typing import TYPE_CHECKING, Any
 
 from launch.frontend.parse_substitution import parse_substitution
@@ -16,6 +12,7 @@ from launch.utilities import normalize_to_list_of_substitutions, perform_substit
 from launch_ros.parameter_descriptions import ParameterFile
 
 from daidalos.common.documents import DocumentError, parse_yaml
+from daidalos.common.temporary_files import write_temporary
 
 if TYPE_CHECKING:
     from launch import LaunchContext
@@ -55,12 +52,7 @@ class Ros1Parameters(ParameterFile):
         import yaml
 
         content = {"/**": {"ros__parameters": self.read(context)}}
-        with tempfile.NamedTemporaryFile(
-            "w", prefix="launch_params_", suffix=".yaml", delete=False, encoding="utf-8"
-        ) as file:
-            yaml.safe_dump(content, file)
-        atexit.register(_remove, file.name)
-        return pathlib.Path(file.name)
+        return write_temporary(yaml.safe_dump(content), "launch_params_", ".yaml")
 
     def read(self, context: LaunchContext) -> dict[str, Any]:
         """Return the parameters' names and values.
@@ -106,8 +98,3 @@ def _flatten(value: Any, prefix: str, source: str) -> dict[str, Any]:
     if not prefix:
         raise SubstitutionFailure(f"{source} has no names of parameters in it, but {value!r}")
     return {prefix: value}
-
-
-def _remove(path: str) -> None:
-    with contextlib.suppress(OSError):
-        os.unlink(path)

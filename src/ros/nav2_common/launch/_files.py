@@ -1,11 +1,7 @@
-"""Reading parameter files while launching, and writing changed ones."""
+"""Reading parameter files while launching."""
 
 from __future__ import annotations
 
-import atexit
-import contextlib
-import os
-import tempfile
 from typing import Any
 
 from launch import LaunchContext, SomeSubstitutionsType, Substitution
@@ -46,16 +42,6 @@ def read_yaml(context: LaunchContext, source_file: list[Substitution]) -> Any:
         raise SubstitutionFailure(f"the parameter file '{path}' is not YAML: {error.described}") from error
 
 
-def write_temporary(text: str) -> str:
-    """Write a file that is there until this process ends, and return its path."""
-    with tempfile.NamedTemporaryFile(
-        "w", prefix="launch_params_", suffix=".yaml", delete=False, encoding="utf-8"
-    ) as file:
-        file.write(text)
-    atexit.register(_delete, file.name)
-    return file.name
-
-
 def normalize_rewrites(rewrites: dict[str, SomeSubstitutionsType] | None) -> dict[str, list[Substitution]]:
     """Return rewrites with substitutions as their values."""
     from launch.utilities import normalize_to_list_of_substitutions
@@ -66,8 +52,3 @@ def normalize_rewrites(rewrites: dict[str, SomeSubstitutionsType] | None) -> dic
 def perform_rewrites(context: LaunchContext, rewrites: dict[str, list[Substitution]]) -> dict[str, str]:
     """Return rewrites with texts as their values."""
     return {key: perform_substitutions(context, value) for key, value in rewrites.items()}
-
-
-def _delete(path: str) -> None:
-    with contextlib.suppress(OSError):
-        os.unlink(path)

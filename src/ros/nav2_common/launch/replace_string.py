@@ -5,7 +5,9 @@ from __future__ import annotations
 from launch import Condition, LaunchContext, SomeSubstitutionsType, Substitution
 from launch.utilities import normalize_to_list_of_substitutions
 
-from ._files import normalize_rewrites, perform_rewrites, read_text, write_temporary
+from daidalos.common.temporary_files import write_temporary
+
+from ._files import normalize_rewrites, perform_rewrites, read_text
 
 
 class ReplaceString(Substitution):
@@ -53,4 +55,4 @@ class ReplaceString(Substitution):
             return path
         for old, new in perform_rewrites(context, self.__replacements).items():
             text = text.replace(old, new)
-        return write_temporary(text)
+        return str(write_temporary(text, "launch_params_", ".yaml"))

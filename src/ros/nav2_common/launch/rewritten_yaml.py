@@ -8,7 +8,9 @@ from typing import Any
 from launch import LaunchContext, SomeSubstitutionsType, Substitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
-from ._files import normalize_rewrites, perform_rewrites, read_yaml, write_temporary
+from daidalos.common.temporary_files import write_temporary
+
+from ._files import normalize_rewrites, perform_rewrites, read_yaml
 
 PARAMETERS = "ros__parameters"
 
@@ -76,7 +78,8 @@ class RewrittenYaml(Substitution):
                 data = _with_value(data, path.split("."), value)
         data = _rewrite_keys(data, perform_rewrites(context, self.__key_rewrites))
         root_key = "" if self.__root_key is None else perform_substitutions(context, self.__root_key)
-        return write_temporary(yaml.safe_dump({root_key: data} if root_key else data, sort_keys=False))
+        text = yaml.safe_dump({root_key: data} if root_key else data, sort_keys=False)
+        return str(write_temporary(text, "launch_params_", ".yaml"))
 
     def __convert(self, text: str) -> Any:
         if self.__convert_types:

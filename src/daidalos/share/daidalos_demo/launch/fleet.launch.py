@@ -4,8 +4,6 @@ Each one gets a goal ahead of it once its navigation should be active.
 """
 
 import math
-import tempfile
-from pathlib import Path
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction, TimerAction
@@ -15,6 +13,8 @@ from launch_ros.descriptions import ComposableNode, ParameterFile
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 from nav2_common.launch import RewrittenYaml
+
+from daidalos.common.temporary_files import write_temporary
 
 SERVERS = [
     ("nav2_controller", "nav2_controller::ControllerServer", "controller_server"),
@@ -38,8 +38,9 @@ def write_world(places, spacing):
     """Write a world with two pillars ahead of each robot, so that its map covers the goal, and return its path."""
     ahead = [(x + 0.75 * spacing, y + side * spacing) for x, y in places for side in (-0.25, 0.25)]
     pillars = [PILLAR.format(number, x, y) for number, (x, y) in enumerate(ahead)]
-    path = Path(tempfile.mkdtemp(prefix="fleet-"), "fleet.world")
-    path.write_text(f'<sdf version="1.6"><world name="fleet">{GROUND}{"".join(pillars)}</world></sdf>')
+    path = write_temporary(
+        f'<sdf version="1.6"><world name="fleet">{GROUND}{"".join(pillars)}</world></sdf>', "fleet-", ".world"
+    )
     return str(path)
 
 

@@ -1,11 +1,11 @@
 """The simulator alone, running at once."""
 
-import tempfile
-
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+
+from daidalos.common.temporary_files import write_temporary
 
 
 def server(context):
@@ -13,9 +13,7 @@ def server(context):
     world = LaunchConfiguration("world_sdf_file").perform(context)
     text = LaunchConfiguration("world_sdf_string").perform(context)
     if text and not world:
-        with tempfile.NamedTemporaryFile("w", suffix=".sdf", prefix="world_", delete=False, encoding="utf-8") as file:
-            file.write(text)
-            world = file.name
+        world = str(write_temporary(text, "world_", ".sdf"))
     return [Node(package="ros_gz_sim", executable="gz_sim", arguments=["-r", "-s", world], output="screen")]
 
 
