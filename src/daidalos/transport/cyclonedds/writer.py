@@ -65,6 +65,7 @@ class Writer:
         self._closed = False
         self._queue: deque[bytes] = deque()
         self._queue_changed = threading.Condition()
+        self._has_thread = False
         self._congested_until = 0
         self._logged_at = -_LOG_INTERVAL_NS
 
@@ -76,7 +77,7 @@ class Writer:
         CdrError
             When the library refuses the sample.
         """
-        if self._queue and self._append(parts):
+        if self._has_thread and self._append(parts):
             return
         size, count, buffers = _buffers(parts)
         while not self._closed:
@@ -99,22 +100,23 @@ class Writer:
         return result != RETCODE_TIMEOUT
 
     def _append(self, parts: list[Any], *, first: bool = False) -> bool:
-        """Queue a sample, if `first` or others are queued already; return whether it was queued.
+        """Queue a sample, if `first` or a thread is emptying the queue; return whether it was queued.
 
         Where the queue is full, its oldest sample is dropped after `_ROOM_TIMEOUT_NS`, and for as long again without
         a wait, so that one stopped process does not stop its publishers.
         """
         with self._queue_changed:
-            if not self._queue:
-                if not first:
-                    return False
-                threading.Thread(target=self._empty_queue, name="dds-writer", daemon=True).start()
-            elif len(self._queue) == self._limit:
+            if self._queue and len(self._queue) == self._limit:
                 if self._keeps_newest:
                     self._queue.popleft()
                 elif not self._wait_for_room():
                     self._queue.popleft()
                     self._count_dropped()
+            if not self._has_thread:  # it may have ended during the wait
+                if not first:
+                    return False
+                self._has_thread = True
+                threading.Thread(target=self._empty_queue, name="dds-writer", daemon=True).start()
             self._queue.append(b"".join(bytes(memoryview(part).cast("B")) for part in parts))
             return True
 
@@ -146,6 +148,7 @@ class Writer:
             with self._queue_changed:
                 if self._closed or not self._queue:
                     self._queue.clear()
+                    self._has_thread = False
                     self._queue_changed.notify_all()
                     return
                 sample = self._queue[0]
@@ -177,7 +180,7 @@ class Writer:
         deadline = None if timeout_ns is None else time.monotonic_ns() + timeout_ns
         with self._queue_changed:
             timeout_s = None if timeout_ns is None else timeout_ns * 1e-9
-            if not self._queue_changed.wait_for(lambda: not self._queue, timeout_s):
+            if not self._queue_changed.wait_for(lambda: not self._has_thread, timeout_s):
                 return False
         if self._closed:
             return True
