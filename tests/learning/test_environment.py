@@ -85,14 +85,42 @@ def test_joints_are_driven_by_efforts(tmp_path: object) -> None:
     assert observation["joints"][0, 0] > 0.2
 
 
-def test_several_step_together() -> None:
-    envs = make_vector(3, motion="kinematic", rays=8)
-    observation, _ = envs.reset(seed=5)
-    assert observation["lidar"].shape == (3, 8)
-    _, rewards, ended, _, _ = envs.step(np.zeros((3, 2), dtype=np.float32))
-    assert rewards.tolist() == [0.0, 0.0, 0.0]
-    assert not ended.any()
-    envs.close()
+def test_several_step_together_in_one_process_or_in_several() -> None:
+    options = {"motion": "kinematic", "rays": 8, "camera": True, "max_steps": 3, "reward": lambda _, after: after.x}
+    here, there = (make_vector(2, processes=processes, **options) for processes in (False, True))
+    assert there.observation_space == here.observation_space
+    firsts = [envs.reset(seed=5)[0] for envs in (here, there)]
+    assert firsts[0]["lidar"].shape == (2, 8)
+    assert not np.array_equal(*firsts[0]["lidar"])
+    actions = np.array([[0.2, 0.5], [-0.2, 1.0]], dtype=np.float32)
+    ended = []
+    for _ in range(6):
+        ours, theirs = here.step(actions), there.step(actions)
+        for name, values in ours[0].items():
+            assert np.array_equal(values, theirs[0][name]), name
+        for mine, other in zip(ours[1:4], theirs[1:4], strict=True):
+            assert mine.tolist() == other.tolist()
+        ended.append(ours[3].tolist())
+    assert ended[2] == [True, True]
+    here.close()
+    there.close()
+    assert not any(process.is_alive() for process in there.processes)
+
+
+def test_the_camera_sees_what_lies_ahead() -> None:
+    env = WorldEnv(camera=True, rays=0, motion="kinematic", render_mode="rgb_array")
+    first, _ = env.reset(seed=0, options={"pose": (0.0, 0.0, 0.0)})
+    kept = first["camera"].copy()
+    assert env.observation_space.contains(first)
+    turned = env.step(np.array([0.0, 1.0], dtype=np.float32))[0]["camera"]
+    assert np.array_equal(turned, env.render())
+    assert not np.array_equal(turned, kept)
+    assert np.array_equal(first["camera"], kept), "an observation must not change afterwards"
+    again, _ = env.reset(seed=1, options={"pose": (0.0, 0.0, 0.0)})
+    assert 0.0 < np.abs(again["camera"].astype(int) - kept).mean() < 4.0  # other noise, the same view
+    blind = WorldEnv(rays=0, motion="kinematic", render_mode="rgb_array")
+    assert "camera" not in blind.reset(seed=0, options={"pose": (0.0, 0.0, 0.0)})[0]
+    assert np.array_equal(blind.render(), kept)
 
 
 def test_what_is_wrong_is_named() -> None:
@@ -102,5 +130,9 @@ def test_what_is_wrong_is_named() -> None:
         WorldEnv(robot="wafle")
     with pytest.raises(UserError, match="'motion' should be"):
         WorldEnv(motion="magic")
+    with pytest.raises(UserError, match="'render_mode' should be 'rgb_array' or None, got 'human'"):
+        WorldEnv(render_mode="human")
+    with pytest.raises(UserError, match="the robot has no camera"):
+        WorldEnv(robot="burger", camera=True)
     with pytest.raises(UserError, match="above 0 s"):
         WorldEnv(period=0.0)

@@ -57,6 +57,8 @@ class WorldEnv(gymnasium.Env[dict[str, Any], Array]):  # type: ignore[misc, unus
         After which an episode is truncated.
     motion : str
         ``dynamics``, or ``kinematic``: the base moves exactly as commanded, which is many times faster.
+    render_mode : str, optional
+        ``rgb_array``: `render` returns what the robot's camera sees, whether that is observed or not.
 
     Raises
     ------
@@ -96,10 +98,13 @@ class WorldEnv(gymnasium.Env[dict[str, Any], Array]):  # type: ignore[misc, unus
             )
         if joints and motion == "kinematic":
             raise UserError("joints are driven by efforts, which the motion 'kinematic' does not have")
-        self.robot = SimulatedRobot(world, robot, rays, joints, camera, motion == "kinematic")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise UserError(f"'render_mode' should be 'rgb_array' or None, got '{render_mode}'")
+        self.robot = SimulatedRobot(world, robot, rays, joints, camera or bool(render_mode), motion == "kinematic")
         if not joints and motion == "dynamics" and not self.robot.has_base:
             raise UserError("the robot takes no velocities; name the 'joints' to drive")
         self.render_mode = render_mode
+        self._observes_camera = camera
         self._period, self._max_steps = period, max_steps
         self._reward, self._is_done = reward or _way_forwards, is_done or _has_collided
         self._start, self._extra = start, extra
@@ -167,8 +172,10 @@ class WorldEnv(gymnasium.Env[dict[str, Any], Array]):  # type: ignore[misc, unus
         return self._observe(self._state), reward, done, is_late, {"state": self._state}
 
     def render(self) -> Any:
-        """Return what the robot's camera sees."""
-        return self.robot.image() if self.render_mode == "rgb_array" else None
+        """Return what the robot's camera sees: the picture that was observed last, where it is observed."""
+        if self.render_mode is None:
+            return None
+        return self._state.image if self._observes_camera else self.robot.image()
 
     def _read(self, action: Array) -> State:
         robot = self.robot
@@ -186,7 +193,7 @@ class WorldEnv(gymnasium.Env[dict[str, Any], Array]):  # type: ignore[misc, unus
             robot.ranges(),
             np.array([joint.position for joint in robot.joints]),
             np.array([joint.velocity for joint in robot.joints]),
-            robot.image(),
+            robot.image() if self._observes_camera else None,
         )
 
     def _observe(self, state: State) -> dict[str, Any]:

@@ -7,17 +7,22 @@ import re
 import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from daidalos.testing.documents import Document
+from daidalos.testing.documents import Document, read_scenario
+from daidalos.testing.journal import Record
+from daidalos.testing.plan import Run
 from daidalos.testing.processes import ScenarioProcess, scenario_environment
 from daidalos.testing.server import Request
 
 if TYPE_CHECKING:
     from daidalos.testing.scenario import Scenario
+
+PICTURES = "failures"
 
 
 @dataclass(frozen=True)
@@ -94,6 +99,24 @@ def run_once(
         return Result(False, result.message, result.simulated_s, result.metrics, goal)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def run_one(process: ScenarioProcess, scenario: Path, run: Run, folder: Path) -> Record:
+    """Carry out one run of a fleet in a process; its picture is kept below a folder where it fails."""
+    begun = time.perf_counter()
+    document = read_scenario(scenario, run.parameters)
+    result = run_once(process, document, run.seed, run.parameters, folder / PICTURES, record=False)
+    return Record(
+        run.number,
+        run.seed,
+        dict(run.parameters),
+        result.passed,
+        result.message,
+        result.simulated_s,
+        round(time.perf_counter() - begun, 3),
+        dict(result.metrics),
+        "" if result.folder is None else result.folder.relative_to(folder).as_posix(),
+    )
 
 
 def slug(name: str) -> str:

@@ -37,13 +37,15 @@ class BenchVerb:
         )
         parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the first run (default: 0)")
         parser.add_argument("--processes", type=int, metavar="N", help="at the same time (default: one a processor)")
-        parser.add_argument("--ray", metavar="ADDRESS", help="run on a cluster of Ray; 'local' starts one here")
+        parser.add_argument(
+            "--ray", metavar="ADDRESS", help="run on a cluster of Ray: HOST:PORT, 'auto', or 'local' to start one here"
+        )
         parser.add_argument("--results", type=Path, metavar="FOLDER", help="where they go (default: bench-SCENARIO)")
         parser.add_argument("--compare", type=Path, metavar="FOLDER", help="results of another version")
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run them; return 0 when all have passed."""
-        from daidalos.testing.fleet import default_processes, run_fleet
+        from daidalos.testing.fleet import run_fleet
         from daidalos.testing.journal import EXTRA, Journal, read_records
         from daidalos.testing.plan import Plan, Variation
         from daidalos.testing.report import comparison, summary, write_report
@@ -57,7 +59,7 @@ class BenchVerb:
         other = read_records(args.compare) if args.compare is not None else []
         with Journal(folder, plan) as journal:
             progress = _Progress(args.runs, list(journal.records.values()))
-            run_fleet(plan, journal, args.processes or default_processes(), progress.add, args.ray)
+            run_fleet(plan, journal, args.processes, progress.add, args.ray)
             progress.finish()
             records = [record for number, record in sorted(journal.records.items()) if number < args.runs]
             table = journal.write_parquet()
