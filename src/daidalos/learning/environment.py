@@ -98,7 +98,7 @@ class WorldEnv(gymnasium.Env[dict[str, Any], Array]):  # type: ignore[misc, unus
             )
         if joints and motion == "kinematic":
             raise UserError("joints are driven by efforts, which the motion 'kinematic' does not have")
-        if render_mode not in (None, *self.metadata["render_modes"]):
+        if render_mode not in (None, "rgb_array"):
             raise UserError(f"'render_mode' should be 'rgb_array' or None, got '{render_mode}'")
         self.robot = SimulatedRobot(world, robot, rays, joints, camera or bool(render_mode), motion == "kinematic")
         if not joints and motion == "dynamics" and not self.robot.has_base:
