@@ -12,15 +12,23 @@ import hypothesis
 import pytest
 
 from places import MACHINE_TEMPORARY, REPOSITORY
+from properties import FULL
 
 # Options meant for this run are not for the pytest that a test starts, which may know other plugins.
 os.environ.pop("PYTEST_ADDOPTS", None)
 
 # How long an example takes says more of the machine's other work than of the code; slowness has its own tests.
-hypothesis.settings.register_profile("daidalos", deadline=None)
+hypothesis.settings.register_profile("daidalos", max_examples=FULL, deadline=None)
+hypothesis.settings.register_profile("quick", max_examples=FULL // 5, deadline=None)
 hypothesis.settings.load_profile("daidalos")
 
 _numbers = itertools.count(os.getpid())
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Try fewer examples of properties in the quick suite."""
+    if "not slow" in config.option.markexpr:
+        hypothesis.settings.load_profile("quick")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

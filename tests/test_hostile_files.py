@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
+
+from properties import examples
 
 MAX_MEMORY = 300 << 20
 """Bytes that this process may grow by while it reads all of them; each has at most a hundred kilobytes."""
@@ -264,7 +266,7 @@ _TREES = st.recursive(
 
 
 @pytest.mark.parametrize(("reader", "name"), YAML.values(), ids=YAML)
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@examples(12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(tree=_TREES)
 def test_any_tree_of_values_is_read_or_refused(tmp_path: Path, reader: Reader, name: str, tree: Any) -> None:
     import yaml
@@ -274,7 +276,7 @@ def test_any_tree_of_values_is_read_or_refused(tmp_path: Path, reader: Reader, n
 
 
 @pytest.mark.parametrize(("reader", "name"), [*YAML.values(), *XML.values()])
-@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@examples(8, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.binary(max_size=60))
 def test_any_bytes_are_read_or_refused(tmp_path: Path, reader: Reader, name: str, data: bytes) -> None:
     (tmp_path / name).write_bytes(data)

@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from packaging.requirements import Requirement
 
 from places import REPOSITORY
@@ -18,6 +19,7 @@ BYTECODE_PER_SOURCE = 1.4
 LARGEST_SHOWN = 12
 
 
+@pytest.mark.slow
 def test_the_plain_installation_is_small() -> None:
     sizes = {name: _size_mb(_files_of(name)) for name in _required()}
     sizes["daidalos"] = _size_mb(_our_files())

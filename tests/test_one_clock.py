@@ -1,6 +1,7 @@
 """Code of robots reads the time of its node's clock only, so that simulated time can be stepped."""
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -39,8 +40,15 @@ ALLOWED = {
 """Files under `src/daidalos` that may read another clock, and what for."""
 
 
+_MAYBE = re.compile(
+    "|".join([rf"{owner}\.({'|'.join(names)})|from {owner} " for owner, names in OTHER_CLOCKS.items()] + [r"wait\("])
+)
+
+
 def uses(source: str) -> Iterator[str]:
     """Yield ``line: name`` of each use of another clock: its functions, and waits that end by themselves."""
+    if not _MAYBE.search(source):
+        return
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             if node.attr in OTHER_CLOCKS.get(node.value.id, ()):

@@ -14,7 +14,10 @@ _READING = {"load", "load_all", "safe_load", "safe_load_all", "full_load", "unsa
 
 def uses(path: Path) -> Iterator[str]:
     """Yield the lines that read YAML by PyYAML itself."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    text = path.read_text(encoding="utf-8")
+    if "yaml" not in text:
+        return
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "yaml":
             if node.attr in _READING:
                 yield f"{path}:{node.lineno}"

@@ -1,7 +1,7 @@
 import random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, Writer
 
@@ -11,6 +11,7 @@ from daidalos.bags.message import BagMessage
 from daidalos.bags.reader import FOREVER_NS
 from daidalos.bags.storage import StorageOptions
 from daidalos.bags.writer import WriterOptions
+from properties import examples
 
 from .records import messages, write
 
@@ -50,7 +51,7 @@ def test_a_file_that_was_cut_off_is_read_up_to_its_last_whole_chunk(file, tmp_pa
     assert len(found) > 5
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(st.data())
 def test_damage_is_told_and_never_breaks_the_reader(file, tmp_path_factory, data):
     whole = bytearray(file.read_bytes())

@@ -1,13 +1,14 @@
 import random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.bags.errors import BagError
 from daidalos.bags.sqlite_reader import SqliteReader
 from daidalos.bags.storage import FOREVER_NS
 from daidalos.bags.writer import WriterOptions
+from properties import examples
 
 from .records import messages, write
 
@@ -45,7 +46,7 @@ def test_a_file_that_was_cut_off_is_told(file, tmp_path):
         assert str(path) in found
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(st.data())
 def test_damage_never_breaks_the_reader(file, tmp_path_factory, data):
     whole = bytearray(file.read_bytes())

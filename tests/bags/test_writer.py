@@ -1,5 +1,5 @@
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 from mcap.records import Message
@@ -12,6 +12,7 @@ from daidalos.bags.metadata import read_metadata
 from daidalos.bags.reader import BagReader
 from daidalos.bags.storage import PROFILES, StorageOptions
 from daidalos.bags.writer import BagWriter, WriterOptions
+from properties import examples
 
 from .records import NUMBER, SECOND, TEXT, messages, read_independently, received, write
 
@@ -191,7 +192,7 @@ def test_an_empty_bag(tmp_path, storage):
         assert (bag.metadata.message_count, bag.metadata.start_ns, bag.metadata.duration_ns) == (0, 0, 0)
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(
     st.lists(st.tuples(st.booleans(), st.binary(max_size=300), st.integers(0, 2**62)), max_size=60),
     st.sampled_from(WAYS),

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bags.records import NUMBER, SECOND, TEXT, messages, write
@@ -13,6 +13,7 @@ from daidalos.bags.compare import differences
 from daidalos.bags.message import BagMessage, Topic
 from daidalos.bags.reader import BagReader
 from daidalos.cli.daidalos import main
+from properties import examples
 
 
 def diff(*words: object) -> int:
@@ -73,7 +74,7 @@ def test_bad_bags_and_topics_end_in_one_line(tmp_path: Path, capsys: pytest.Capt
     assert lines[1:] == ["error: neither bag has the topic '/numbr'", "Did you mean '/number'?"]
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(
     bags=st.tuples(*[st.lists(st.tuples(st.integers(0, 2), st.integers(0, 2)), max_size=8)] * 2),
 )

@@ -69,6 +69,7 @@ def is_read(kind: type[Parameters], name: str) -> bool:
     return any(name in one.names or any(re.fullmatch(form, name) for form in one.patterns) for one in files)
 
 
+@pytest.mark.slow
 def test_every_parameter_is_read() -> None:
     everything = {one for kind in CLASSES for one in (kind, *group_kinds(kind))}
     unread = sorted(

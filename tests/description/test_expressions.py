@@ -4,10 +4,11 @@ import contextlib
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.description.expressions import MAX_LENGTH, MAX_STEPS, Evaluator, ExpressionError
+from properties import examples
 
 NAMES = {
     **{name: getattr(math, name) for name in ("pi", "sin", "cos", "radians", "sqrt", "atan2")},
@@ -145,7 +146,7 @@ def test_the_allowance_is_for_all_expressions_together():
         evaluator.evaluate("[a for a in range(9)]", names)
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(
     st.recursive(
         st.sampled_from(["1", "size", "values", "side", "9**9", "table", "''", "str", "range(9)", "(lambda: 0)"]),

@@ -2,7 +2,7 @@ import math
 import re
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.common.pose3 import Pose
@@ -12,6 +12,7 @@ from daidalos.description.geometry import Box, Capsule, Cylinder, Empty, Mesh, P
 from daidalos.description.joint import JointType
 from daidalos.description.markup import parse_markup
 from description.robots import ARM, SHARE, problem_of, share_of
+from properties import examples
 
 
 def test_everything_in_a_robot_is_read():
@@ -210,7 +211,7 @@ def test_the_turtlebots_load(name):
     assert not robot.warnings
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(st.data())
 def test_damaged_robots_give_robots_or_descriptions_errors(data):
     """Change one attribute or drop one element: either it still is a robot or the error has a place."""

@@ -27,6 +27,7 @@ LAUNCH = [*ROS2, "launch"]
 MAP = [*DAIDALOS, "map", "-o", "built"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "name", "error"),
     [

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from geometry_msgs.msg import Pose
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from nav_msgs.msg import Path as NavigationPath
 from rcl_interfaces.msg import Parameter, ParameterEvent
@@ -27,8 +27,9 @@ from daidalos.interfaces.codec._encoder import Encoder
 from daidalos.interfaces.codec._text import Variant
 from daidalos.interfaces.message import Message
 from interfaces.messages import NAMES, PACKAGES, class_of, from_plain, messages, to_plain
+from properties import examples
 
-QUICK = settings(max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+QUICK = examples(15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 WIDTHS = (2, 4)
 STORE = get_typestore(Stores.ROS2_JAZZY)
 # rosbags takes an empty message for nothing at all.
@@ -100,7 +101,7 @@ def test_big_endian_arrays_are_read():
 
 
 @pytest.mark.parametrize("name", KNOWN_TO_ROSBAGS)
-@settings(parent=QUICK, max_examples=5)
+@examples(5, parent=QUICK)
 @given(data=st.data())
 def test_an_independent_implementation_agrees(name, data):
     kind = class_of(name)
@@ -145,7 +146,7 @@ def _listed(value: Any) -> Any:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-@settings(parent=QUICK, max_examples=40)
+@examples(40, parent=QUICK)
 @given(data=st.data(), body=st.binary(max_size=400))
 def test_any_bytes_are_a_message_or_a_clear_error(package, data, body):
     name = data.draw(st.sampled_from(names_of(package)))

@@ -13,7 +13,7 @@ import pytest
 from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
 from geometry_msgs.msg import Point, PoseStamped, PoseWithCovariance, Vector3
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from rcl_interfaces.msg import ParameterValue
 from sensor_msgs.msg import Image, JointState, LaserScan
@@ -22,6 +22,7 @@ from test_msgs.msg import Arrays, BasicTypes, BoundedSequences, Constants, Defau
 
 from daidalos.interfaces.codec import codec_of
 from interfaces.messages import NAMES, PACKAGES, class_of, messages
+from properties import examples
 
 
 def names_of(package: str) -> list[str]:
@@ -48,7 +49,7 @@ def test_every_class_has_the_members_of_rosidls(package):
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-@settings(max_examples=20, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@examples(20, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(data=st.data())
 def test_messages_are_equal_to_their_copies(package, data):
     kind = class_of(data.draw(st.sampled_from(names_of(package))))

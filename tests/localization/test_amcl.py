@@ -36,6 +36,7 @@ def errors(filter_, wanderer, steps):
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["likelihood_field", "likelihood_field_prob", "beam"])
 def test_a_robot_is_tracked(model):
     filter_ = Amcl(AmclConfig(laser_model_type=model), MAP, seed=1)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2, norm
@@ -18,6 +18,7 @@ from daidalos.localization.particles import (
     low_variance_indices,
     mean_and_covariance,
 )
+from properties import examples
 
 
 @given(
@@ -50,7 +51,7 @@ def test_bins_go_round_with_the_yaw():
     assert np.unique(bins_of(np.array([[-0.1, 0.0, 0.0], [0.0, -0.1, 0.0], [0.0, 0.0, -0.1]]))).size == 3
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(seed=st.integers(0, 10_000))
 def test_the_heaviest_cluster_is_that_of_a_graph_of_touching_bins(seed):
     generator = np.random.default_rng(seed)

@@ -89,6 +89,7 @@ print(json.dumps(log))
 """
 
 
+@pytest.mark.slow
 def test_threads_queues_pools_event_loops_and_clocks_follow_the_stepped_time(tmp_path: Path) -> None:
     path = script(tmp_path, EVERYTHING)
     first, second, other = (run(sys.executable, path, folder=tmp_path, options=Options(seed)) for seed in (1, 1, 2))

@@ -3,16 +3,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 from daidalos.common import pose2
 from daidalos.mapping.errors import GraphFileError
 from daidalos.mapping.g2o_file import read_g2o, write_g2o
 from daidalos.mapping.pose_graph import Edge, optimize, squared_errors
+from properties import examples
 
 numbers = st.floats(-1e6, 1e6)
-AS_FILES = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=50)
+AS_FILES = examples(50, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 def grid_of_poses(side: int) -> tuple[np.ndarray, list[Edge]]:

@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.mapping.grid import FREE, OCCUPIED, UNKNOWN, ScanGrid
 from daidalos.mapping.scan import Cloud, LaserScanData, to_cloud
+from properties import examples
 
 from .worlds import arena, raster, room_scan
 
@@ -36,7 +37,7 @@ def test_a_beam_that_is_too_long_only_frees() -> None:
     assert states(grid, min_pass_through=1) == {(0, 0): FREE, (0, 1): FREE, (0, 2): FREE}
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(st.tuples(coordinate, coordinate), st.tuples(coordinate, coordinate), st.floats(-4.0, 4.0))
 def test_the_cells_of_a_beam_are_those_that_its_line_crosses(
     origin: tuple[float, float], end: tuple[float, float], yaw: float

@@ -50,6 +50,7 @@ def test_false_closures_are_rejected_and_true_ones_kept() -> None:
     assert np.hypot(*(solution.poses - true)[:, :2].T).max() < 0.15
 
 
+@pytest.mark.slow
 def test_chordal_start_solves_what_descent_from_odometry_does_not() -> None:
     """A long walk on a grid of streets with a bad compass; the best solution is that reached from the truth."""
     rng = np.random.default_rng(3)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 from daidalos.mapping import pose_graph_file
@@ -13,6 +13,7 @@ from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.pose_graph import Edge
 from daidalos.mapping.pose_graph_file import SavedGraph, load_pose_graph, save_pose_graph
 from daidalos.mapping.scan import to_cloud
+from properties import examples
 
 from .worlds import room_scan
 
@@ -108,7 +109,7 @@ def test_what_cannot_be_read_is_named(tmp_path: Path) -> None:
         save_pose_graph(graph(), tmp_path / "no folder" / "a")
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=40)
+@examples(40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sampled_from([".posegraph", ".data"]), st.integers(0, 10**6), st.integers(1, 255), st.booleans())
 def test_a_damaged_file_is_never_taken(tmp_path: Path, suffix: str, at: int, change: int, cut: bool) -> None:
     save_pose_graph(graph(), tmp_path / "map")

@@ -121,6 +121,7 @@ def test_removed_key_scans_leave_a_connected_map() -> None:
     assert np.array_equal(slam.grid().data, redrawn.grid().data)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tree", [False, True])
 def test_a_map_does_not_grow_in_a_place_that_is_known(tree: bool) -> None:
     slam, decay = Slam(CONFIG), KeyScanDecay(LifelongConfig(lifelong_search_use_tree=tree))

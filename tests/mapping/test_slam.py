@@ -125,6 +125,7 @@ def test_a_loop_is_closed_and_the_map_follows_in_pieces() -> None:
     assert drawn > 0
 
 
+@pytest.mark.slow
 def test_a_featureless_corridor_is_not_compressed() -> None:
     """Nothing but odometry tells the way along it: the match must not hold the robot back."""
     rng = np.random.default_rng(1)
@@ -138,6 +139,7 @@ def test_a_featureless_corridor_is_not_compressed() -> None:
     assert abs(results[-1].pose[1]) < 0.4
 
 
+@pytest.mark.slow
 def test_scans_may_vary_and_lack_ranges() -> None:
     true, odometry, scans = tour(Lidar(beams=360))
     rng = np.random.default_rng(5)

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from daidalos.common.kernels import KERNELS, warm_up
 from daidalos.mapping.slam import Slam
@@ -6,6 +7,7 @@ from daidalos.mapping.slam import Slam
 from .worlds import Lidar, arena, drive, room_scan, wheel_odometry
 
 
+@pytest.mark.slow
 def test_nothing_is_left_to_compile_for_slam() -> None:
     """No kernel meets types that it has not met before, in a run with turns, closures and a map."""
     warm_up("daidalos.mapping")

@@ -67,6 +67,7 @@ def test_a_robot_that_stands_in_a_wall_of_the_map_drives_away():
     assert arrival.reached, arrival
 
 
+@pytest.mark.slow
 def test_a_door_that_is_shut_on_the_way_is_driven_around():
     stack = turtlebot(WORLD, [1.5, 1.6, 0.0], WALLS)
     shut = np.concatenate([WORLD.segments, [(2.95, 1.1, 2.95, 2.1)]])

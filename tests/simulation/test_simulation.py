@@ -141,6 +141,7 @@ def test_spawn_takes_name_and_pose():
         simulation.pose("b", "x")
 
 
+@pytest.mark.slow
 def test_many_models_come_and_go_without_a_trace():
     simulation = Simulation(world())
     before = (
@@ -188,6 +189,7 @@ def test_a_failed_spawn_leaves_the_world_as_it_was(heading):
     simulation.advance(SECOND // 10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moved", [False, True])
 def test_a_robot_that_is_placed_inside_another_leaves_it_slowly(moved):
     simulation = Simulation(world())
@@ -234,6 +236,7 @@ def test_a_box_without_restitution_stays_where_it_falls():
     assert max(heights[lowest:]) < 4e-3
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_run():
     def run(seed):
         simulation = Simulation(arena(), seed=seed)

@@ -45,6 +45,7 @@ def test_variations_are_read_and_drawn_from_the_seed_alone(scenario: Path) -> No
             Variation.parse(wrong)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="the scenarios end programs by signals")
 def test_a_fleet_goes_on_where_it_was_ended(scenario: Path, tmp_path: Path) -> None:
     plan = Plan(scenario, 4, 4, (Variation.parse("within=2,4"),))

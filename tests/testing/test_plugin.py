@@ -107,6 +107,7 @@ def test_nothing_is_imported_where_there_is_no_scenario(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stdout
 
 
+@pytest.mark.slow
 def test_scenarios_run_from_the_command_line(tmp_path: Path) -> None:
     (tmp_path / "talker.yaml").write_text(
         YAML.replace("/chater", "/chatter").replace('""', '"Hello World: 3"').replace("n: 1", "n: 2")

@@ -72,6 +72,7 @@ def test_a_large_graph_is_right_within_seconds(new_session: Callable[[], Session
     assert session.graph.wait_for(lambda: not session.graph.nodes() and not session.graph.endpoints(), TIMEOUT_S)
 
 
+@pytest.mark.slow
 def test_the_first_of_three_dies():
     with Peer("watch").ready() as first, Peer("listen").ready() as second, Peer("talk").ready() as third:
         first.wait_for("came talker")
@@ -82,6 +83,7 @@ def test_the_first_of_three_dies():
         assert line
 
 
+@pytest.mark.slow
 def test_who_is_killed_leaves_the_graph(new_session: Callable[[], Session]):
     session = new_session()
     with Peer("watch").ready() as watcher, Peer("talk").ready() as talker:
@@ -95,6 +97,7 @@ def test_who_is_killed_leaves_the_graph(new_session: Callable[[], Session]):
             assert session.graph.wait_for(lambda: names(session) == ["talker"], TIMEOUT_S)
 
 
+@pytest.mark.slow
 def test_a_death_in_mid_message_harms_nobody(new_session: Callable[[], Session]):
     session = new_session()
     inbox = subscribe(session, node_of(session, "me"), "/topic", Image)
@@ -108,6 +111,7 @@ def test_a_death_in_mid_message_harms_nobody(new_session: Callable[[], Session])
     assert {len(message.data) for message, _ in inbox.taken} == {4_000_000}
 
 
+@pytest.mark.slow
 def test_a_service_that_dies_is_replaced(new_session: Callable[[], Session]):
     session = new_session()
     answers = Inbox()
@@ -122,6 +126,7 @@ def test_a_service_that_dies_is_replaced(new_session: Callable[[], Session]):
         assert session.graph.wait_for(lambda: not session.server_is_ready(client), TIMEOUT_S)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("overlap", [False, True])
 def test_a_request_whose_server_died_is_answered_by_the_next(new_session: Callable[[], Session], overlap: bool):
     session = new_session()

@@ -5,12 +5,13 @@ import shutil
 import subprocess
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.workspaces.cmake.reader import read_package
 from daidalos.workspaces.cmake.syntax import parse
 from daidalos.workspaces.errors import WorkspaceError
+from properties import examples
 
 from . import packages
 
@@ -189,7 +190,7 @@ def test_a_file_without_project_is_named(tmp_path):
 
 
 @given(st.text(alphabet='abif(){}$;"\\#[]= \n', max_size=60))
-@settings(max_examples=300)
+@examples(300)
 def test_any_text_is_read_or_refused(text):
     with contextlib.suppress(WorkspaceError):
         parse(text, "CMakeLists.txt")

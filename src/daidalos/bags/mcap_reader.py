@@ -330,7 +330,7 @@ class McapReader(StorageReader):
             except RuntimeError as error:
                 raise ValueError(str(error)) from None
         elif chunk.compression:
-            raise ValueError(f"its compression '{chunk.compression}' is not known")
+            raise ValueError(f"its compression {chunk.compression!r} is not known")
         if chunk.crc and zlib.crc32(data) != chunk.crc:
             raise ValueError("its checksum is wrong")
         return data

@@ -52,6 +52,7 @@ def server(beside, wait_for):
     return process
 
 
+@pytest.mark.slow
 def test_an_action_is_named_with_its_server_and_found_by_its_type(env, server):
     told = "Action: /lab/fibonacci\nAction clients: 0\nAction servers: 1\n    /lab/server"
     assert ros2("action", "info", "/lab/fibonacci", env=env).out == f"{told}\n"

@@ -69,6 +69,7 @@ def test_bash_completes_what_needs_no_graph(bash, line, expected):
     assert bash(line) == expected
 
 
+@pytest.mark.slow
 def test_bash_completes_what_is_in_the_graph(bash, beside, wait_for):
     beside(NODE)
     wait_for("/talker/set_parameters")
@@ -79,6 +80,7 @@ def test_bash_completes_what_is_in_the_graph(bash, beside, wait_for):
     assert bash("ros2 topic pub /chatter ") == ["std_msgs/msg/String"]
 
 
+@pytest.mark.slow
 def test_bash_completes_launch_files_and_their_arguments(bash, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     choices = '<choice value="fast"/><choice value="slow"/>'

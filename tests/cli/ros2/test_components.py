@@ -17,6 +17,7 @@ def container(beside, wait_for):
     wait_for("/ComponentManager/_container/load_node")
 
 
+@pytest.mark.slow
 def test_components_are_loaded_listed_and_unloaded(env, container):
     def component(*words):
         return ros2("component", *words, env=env)
@@ -33,6 +34,7 @@ def test_components_are_loaded_listed_and_unloaded(env, container):
     assert component("list", "/ComponentManager").out == "2  /lab/ear\n"
 
 
+@pytest.mark.slow
 def test_what_is_not_there_cannot_be_loaded_or_unloaded(env, container):
     result = ros2("component", "load", "/ComponentManager", "demo_nodes_cpp", "demo_nodes_cpp::Talkr", env=env)
     assert (result.status, result.out) == (1, "")

@@ -20,6 +20,7 @@ def managed(beside, wait_for):
     wait_for("/managed/get_transition_graph")
 
 
+@pytest.mark.slow
 def test_a_node_is_taken_through_its_states(env, managed):
     def lifecycle(*words):
         return ros2("lifecycle", *words, env=env)

@@ -36,6 +36,7 @@ def talker(beside, wait_for):
     wait_for("/lab/talker/set_parameters")
 
 
+@pytest.mark.slow
 def test_what_is_dumped_can_be_loaded(env, talker, tmp_path):
     dumped = ros2("param", "dump", "/lab/talker", env=env).out
     saved = ros2("param", "dump", "/lab/talker", "--output-dir", ".", env=env, cwd=tmp_path)

@@ -54,6 +54,7 @@ def run(parts: Any, cycles: int, start: int = 0) -> tuple[np.ndarray, Any]:
     return np.array(rows), said
 
 
+@pytest.mark.slow
 def test_it_yields_like_a_mass_on_a_spring_and_a_damper() -> None:
     parts = rig()
     parts[2]["wrist/force.x"] = 10.0

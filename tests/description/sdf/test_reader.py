@@ -1,7 +1,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.common.pose3 import Pose
@@ -24,6 +24,7 @@ from daidalos.description.joint import JointType
 from daidalos.description.markup import parse_markup
 from daidalos.description.sdf.context import BUILT_IN_MODELS
 from description.robots import ARM, SHARE, problem_of
+from properties import examples
 
 WORLD = """<?xml version="1.0"?>
 <sdf version="1.9">
@@ -491,7 +492,7 @@ def test_our_worlds_load(name):
     assert not world.warnings
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(st.data())
 def test_damaged_worlds_give_worlds_or_descriptions_errors(data):
     root = parse_markup(WORLD)

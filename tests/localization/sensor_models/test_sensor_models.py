@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.common.pose2 import compose
@@ -21,6 +21,7 @@ from daidalos.localization.sensor_models.sensor_model import Beams
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 from navigation.flat_world import arena
+from properties import examples
 
 from ..wandering import map_of
 
@@ -57,7 +58,7 @@ def twin(pose, beams, product):
     return math.exp(total) if product else total
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(x=st.floats(0.3, 7.7), y=st.floats(0.3, 5.7), yaw=st.floats(-3.1, 3.1), product=st.booleans())
 def test_likelihood_fields_follow_their_formula(x, y, yaw, product):
     beams = beams_at((1.5, 1.5, 0.4))
@@ -78,7 +79,7 @@ def test_the_truth_is_more_likely_than_other_poses(model, truth):
     assert likelihoods[0] > likelihoods[1:][~near].max()
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(x=st.floats(0.4, 2.7), y=st.floats(0.3, 2.3), angle=st.floats(-math.pi, math.pi))
 def test_rays_end_at_the_first_occupied_cell(x, y, angle):
     along = np.arange(0.0, 10.0, 0.001)

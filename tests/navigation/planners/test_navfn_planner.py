@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.navigation.contracts import NavigationContext
@@ -21,6 +21,7 @@ from daidalos.navigation.errors import (
 )
 from daidalos.navigation.paths import path_length
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
+from properties import examples
 
 from .worlds import cluttered, random_pose
 
@@ -58,7 +59,7 @@ def test_a_goal_in_the_cell_of_the_robot():
     assert np.allclose(path[-1], [1.01, 1.01, 0.5])
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(seed=st.integers(0, 10_000), allow_unknown=st.booleans())
 def test_dijkstra_and_a_star_find_ways_of_the_same_cost(seed, allow_unknown):
     costmap, generator = cluttered(seed)

@@ -5,13 +5,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from daidalos.navigation.planners.navfn_planner import COST_FACTOR
 from daidalos.navigation.planners.navigation_function import descend, nearest_passable_cell, nearest_reached, propagate
+from properties import examples
 
 from .worlds import cluttered
 
@@ -79,7 +80,7 @@ def test_over_dear_ground_the_value_grows_as_fast_as_the_cost():
     assert value[2, 59] == pytest.approx(59 * STEP[100], rel=1e-4)
 
 
-@settings(max_examples=12)
+@examples(12)
 @given(seed=st.integers(0, 10_000))
 def test_values_are_those_of_plain_sweeps(seed):
     costmap, generator = cluttered(seed, 25, 30, boxes=4)
@@ -90,7 +91,7 @@ def test_values_are_those_of_plain_sweeps(seed):
     assert np.allclose(value, sweep(costmap.costs, (columns[i], rows[i])), rtol=2e-3, atol=1e-2)
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(seed=st.integers(0, 10_000))
 def test_values_lie_between_the_bounds_of_ways_along_the_axes(seed):
     costmap, generator = cluttered(seed)
@@ -104,7 +105,7 @@ def test_values_lie_between_the_bounds_of_ways_along_the_axes(seed):
         assert along_axes / math.sqrt(2.0) * 0.999 <= value <= along_axes * 1.001
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(seed=st.integers(0, 10_000))
 def test_a_bound_that_is_not_too_low_changes_nothing_at_the_goal(seed):
     costmap, generator = cluttered(seed)
@@ -119,7 +120,7 @@ def test_a_bound_that_is_not_too_low_changes_nothing_at_the_goal(seed):
         assert np.isfinite(bounded).sum() <= np.isfinite(whole).sum() or not np.isfinite(whole).all()
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(seed=st.integers(0, 10_000))
 def test_the_way_down_costs_what_the_value_says(seed):
     costmap, generator = cluttered(seed)

@@ -180,6 +180,7 @@ def test_initial_values_are_where_joints_start_again_and_again() -> None:
     assert rig.position("slide") == pytest.approx(0.07, abs=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("interface", "gains"),
     [
@@ -424,6 +425,7 @@ GANTRY = f"""<robot name="gantry"><link name="world"/>
   </sensor></ros2_control>{PLUGIN.format("")}</robot>"""
 
 
+@pytest.mark.slow
 def test_a_tip_yields_to_a_push_that_its_sensor_feels() -> None:
     rig = Rig(GANTRY)
     frames = {"frame": {"id": "tool"}}

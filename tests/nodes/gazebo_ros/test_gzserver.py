@@ -84,6 +84,7 @@ def test_two_simulators_in_one_graph_are_pointed_out(graph, capfd):  # noqa: F81
         other.destroy_node()
 
 
+@pytest.mark.slow
 def test_gazebos_launch_arguments_reach_it(domain, tmp_path):
     parameters = tmp_path / "gazebo.yaml"
     parameters.write_text("gazebo:\n  ros__parameters:\n    real_time_factor: 0.0\n")

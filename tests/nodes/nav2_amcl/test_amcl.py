@@ -65,6 +65,7 @@ def localized(stage: Set) -> Bench:
     return bench
 
 
+@pytest.mark.slow
 def test_a_robot_is_followed_from_a_guess_aside(stage: Set) -> None:
     bench = Bench(stage, max_particles=700)
     clouds = bench.stage.collect(ParticleCloud, "particle_cloud", qos_profile_sensor_data)

@@ -82,6 +82,7 @@ def test_a_hostile_expression_is_one_line(run, expression):
     assert said.startswith("error: r.xacro:2: ")
 
 
+@pytest.mark.slow
 def test_time_and_memory_are_bounded_in_a_process_of_its_own(tmp_path, monkeypatch, capsys):
     if sys.platform == "win32":
         pytest.skip("this system has no such limits")

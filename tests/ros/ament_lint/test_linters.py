@@ -70,6 +70,7 @@ def test_without_the_linter_a_test_is_skipped_and_a_command_says_how_to_get_it(f
         ament_flake8.main.main(argv=[])
 
 
+@pytest.mark.slow
 def test_the_markers_are_known(folder):
     (folder / "test_it.py").write_text(
         "import pytest\n\n\n@pytest.mark.flake8\n@pytest.mark.linter\ndef test_it():\n    pass\n"

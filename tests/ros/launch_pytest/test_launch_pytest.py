@@ -289,6 +289,7 @@ class TestIt:
     run(pytester, body).assert_outcomes(passed=1)
 
 
+@pytest.mark.slow
 def test_other_tests_are_left_alone(pytester):
     body = """
 import unittest

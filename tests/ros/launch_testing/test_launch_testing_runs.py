@@ -271,6 +271,7 @@ def test_missing_file(capsys):
 PLUGIN = ("-p", "launch_testing.pytest.hooks", "-p", "no:cacheprovider")
 
 
+@pytest.mark.slow
 def test_pytest_collects_marked_descriptions(pytester):
     marked = "@pytest.mark.launch_test" + GOOD
     write(pytester.path / "test_good.py", marked)

@@ -362,6 +362,7 @@ def seed_launch_files():
         yield from (block.lstrip() for block in blocks if "<launch>" in block)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not SEED.is_dir(), reason="the document with ROS 1 launch files is not beside the checkout")
 def test_launch_files_of_the_tutorial(ran, tmp_path, monkeypatch):
     for package in ("tb3_gazebo", "tb3_description", "tb3_navigation", "gazebo_ros"):

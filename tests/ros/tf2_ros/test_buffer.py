@@ -217,7 +217,7 @@ def test_turning_simulated_time_on_or_off_clears_the_buffer(node: Node) -> None:
 
 def test_a_buffer_does_not_live_as_long_as_the_clock(node: Node) -> None:
     jumps = node.get_clock().handle._jumps
-    for _ in range(5):
+    for _ in range(2):
         buffer = Buffer()
         buffer.follow(node)
         weak = weakref.ref(buffer)

@@ -6,9 +6,11 @@ import math
 import numpy as np
 import pytest
 import tf_transformations as tf
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation, Slerp
+
+from properties import examples
 
 AXES = [
     kind + "".join(order)
@@ -43,7 +45,7 @@ def test_there_are_24_conventions() -> None:
 
 
 @pytest.mark.parametrize("axes", AXES)
-@settings(max_examples=20)
+@examples(20)
 @given(ai=angles, aj=angles, ak=angles)
 def test_angles_as_scipy_has_them(axes: str, ai: float, aj: float, ak: float) -> None:
     expected = Rotation.from_euler(scipy_axes(axes), [ai, aj, ak])
@@ -53,7 +55,7 @@ def test_angles_as_scipy_has_them(axes: str, ai: float, aj: float, ak: float) ->
 
 
 @pytest.mark.parametrize("axes", AXES)
-@settings(max_examples=20)
+@examples(20)
 @given(quaternion=quaternions)
 def test_angles_of_a_rotation_make_that_rotation(axes: str, quaternion: np.ndarray) -> None:
     matrix = tf.quaternion_matrix(quaternion)

@@ -253,6 +253,7 @@ def test_floating_joints_bind_nothing():
     assert simulation.physics.model.nv == 12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "count"), [("fixed", 1000), ("revolute", 520)])
 def test_an_arm_may_have_more_links_than_python_calls_functions_within_each_other(kind, count):
     links = "".join(

@@ -55,6 +55,7 @@ def test_pieces_come_apart():
         assert [volume(part) for part in parts] == pytest.approx([6, 6, 6])
 
 
+@pytest.mark.slow
 def test_concave_pieces_are_split_and_kept(own_cache, monkeypatch):
     corner = triangles_of(L_SHAPE)
     parts, concave = parts_of(corner)
@@ -114,6 +115,7 @@ def test_flat_things_get_a_thickness(vertices):
     np.testing.assert_allclose(np.ptp(part.vertices, axis=0), np.ptp(flat.vertices, axis=0), atol=0.01)
 
 
+@pytest.mark.slow
 def test_a_damaged_cache_does_not_count(own_cache):
     corner = triangles_of(L_SHAPE)
     expected = [part.vertices.tolist() for part in parts_of(corner)[0]]

@@ -29,6 +29,7 @@ def test_a_convex_body_stays_whole():
     assert len(decompose(mesh_of(trimesh.creation.icosphere(radius=0.5)))) == 1
 
 
+@pytest.mark.slow
 def test_a_hexagonal_wall_leaves_its_middle_free_and_is_solid():
     wall = ring(2.5, 2.7, 0.5, 6)
     parts = decompose(mesh_of(wall))
@@ -55,6 +56,7 @@ def test_an_open_box_keeps_its_opening():
     assert nearest.max() < 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [0.02, 30.0])
 def test_the_tolerance_follows_the_size(size):
     wall = ring(0.8 * size, size, 0.3 * size, 12)
@@ -63,6 +65,7 @@ def test_the_tolerance_follows_the_size(size):
     assert covered(parts, np.zeros((1, 3))).any() == (size < 0.03)  # 1 cm of concavity does not matter
 
 
+@pytest.mark.slow
 def test_the_result_is_the_same_every_time():
     wall = mesh_of(ring(1.0, 1.3, 0.4, 9))
     for one, other in zip(decompose(wall), decompose(wall), strict=True):

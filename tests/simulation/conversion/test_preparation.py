@@ -26,6 +26,8 @@ def rings(tmp_path, monkeypatch):
     return sdf.parse(f"<sdf version='1.9'><world name='w'>{models}</world></sdf>", str(tmp_path / "w.sdf"))
 
 
+@pytest.mark.slow
+@pytest.mark.slow
 def test_what_is_prepared_is_what_is_used(rings, monkeypatch):
     prepared = prepare_meshes(rings.models)
     shape = rings.models[1].links["l"].collisions[0].geometry
@@ -43,6 +45,8 @@ def test_what_is_prepared_is_what_is_used(rings, monkeypatch):
     assert "broken.stl" in simulation.warnings[0]
 
 
+@pytest.mark.slow
+@pytest.mark.slow
 def test_progress_is_reported(rings, monkeypatch):
     monkeypatch.setattr(preparation, "REPORT_DELAY", 0.0)
     monkeypatch.setattr(preparation, "_CHECK_PERIOD", 1e-3)
@@ -71,6 +75,8 @@ def test_a_request_to_end_ends_the_work(rings, monkeypatch):
         prepare_meshes(rings.models, is_cancelled=lambda: next(asked))
 
 
+@pytest.mark.slow
+@pytest.mark.slow
 def test_spawning_reports_progress_and_takes_what_is_prepared(rings, monkeypatch):
     monkeypatch.setattr(preparation, "REPORT_DELAY", 0.0)
     monkeypatch.setattr(preparation, "_CHECK_PERIOD", 1e-3)

@@ -106,6 +106,7 @@ def test_slip_grows_with_the_force():
     assert sample.lateral == pytest.approx([0] * 4, abs=0.01)
 
 
+@pytest.mark.slow
 def test_without_force_there_is_no_slip():
     speed, sample = slipping(1.0, 0.5, push=0.0)
     assert speed == pytest.approx(0.5, abs=0.005)

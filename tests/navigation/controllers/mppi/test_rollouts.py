@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts, correlated_noise
+from properties import examples
 
 LIMITS = Limits(-0.2, 0.5, 1.8, -2.5, 2.0, 3.2)
 
@@ -31,7 +32,7 @@ def twin(pose, velocity, controls, noise, step):
     return np.array(states)
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(seed=st.integers(0, 10_000))
 def test_samples_are_driven_as_plain_arithmetic_drives_them(seed):
     generator = np.random.default_rng(seed)

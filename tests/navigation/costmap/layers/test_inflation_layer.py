@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import distance_transform_edt
 
@@ -13,6 +13,7 @@ from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap, Window
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
+from properties import examples
 
 
 def twin(costs, resolution, inscribed, radius, factor):
@@ -30,7 +31,7 @@ def twin(costs, resolution, inscribed, radius, factor):
     return inflated
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(
     seed=st.integers(0, 10_000),
     share=st.sampled_from([0.0, 0.002, 0.02, 0.2]),
@@ -50,7 +51,7 @@ def test_costs_follow_the_exact_distance(seed, share, shape, radius, factor):
     assert np.array_equal(costmap.costs, expected)
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(seed=st.integers(0, 10_000), left=st.integers(0, 30), bottom=st.integers(0, 30))
 def test_a_window_gets_what_the_whole_gets(seed, left, bottom):
     generator = np.random.default_rng(seed)

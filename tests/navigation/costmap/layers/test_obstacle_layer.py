@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import LineString, box
 
@@ -19,6 +19,7 @@ from daidalos.navigation.costmap.layers.obstacle_layer import (
     ObstacleLayerParameters,
     clear_rays,
 )
+from properties import examples
 
 ROBOT = Footprint.circle(0.1)
 HERE = np.array([1.0, 1.0, 0.0])
@@ -181,7 +182,7 @@ def cells_by_sampling(start, end, hit, min_range, max_range, resolution=0.1):
     return {(c, r) for c, r in cells if 0 <= c < 20 and 0 <= r < 20}
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(
     start=st.tuples(off_borders(100, 1900), off_borders(100, 1900)),
     end=st.tuples(off_borders(-1000, 3000), off_borders(-1000, 3000)),
