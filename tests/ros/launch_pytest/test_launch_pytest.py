@@ -46,7 +46,7 @@ def shared():
 def run(pytester, body, *arguments):
     pytester.makepyfile(HEAD + body)
     pytester.makeini("[pytest]\nmarkers = slow: x")
-    return pytester.runpytest_subprocess("-p", "launch_pytest.plugin", "-p", "no:cacheprovider", "-vv", *arguments)
+    return pytester.runpytest_inprocess("-p", "launch_pytest.plugin", "-p", "no:cacheprovider", "-vv", *arguments)
 
 
 def order_of(result):
@@ -289,7 +289,6 @@ class TestIt:
     run(pytester, body).assert_outcomes(passed=1)
 
 
-@pytest.mark.slow
 def test_other_tests_are_left_alone(pytester):
     body = """
 import unittest

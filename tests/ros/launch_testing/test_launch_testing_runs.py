@@ -271,19 +271,18 @@ def test_missing_file(capsys):
 PLUGIN = ("-p", "launch_testing.pytest.hooks", "-p", "no:cacheprovider")
 
 
-@pytest.mark.slow
 def test_pytest_collects_marked_descriptions(pytester):
     marked = "@pytest.mark.launch_test" + GOOD
     write(pytester.path / "test_good.py", marked)
     write(pytester.path / "test_unmarked.py", GOOD + "\ndef test_x(): pass\n")
     write(pytester.path / "test_bad.py", "@pytest.mark.slow\n" + marked.replace("'stopped'", "'never'"))
     pytester.makeini("[pytest]\nmarkers = slow: x")
-    result = pytester.runpytest_subprocess(*PLUGIN, "test_good.py", "test_bad.py", "-v")
+    result = pytester.runpytest_inprocess(*PLUGIN, "test_good.py", "test_bad.py", "-v")
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(["*test_bad.TestAfter.test_exit*", "*'never' not found*"])
-    result = pytester.runpytest_subprocess(*PLUGIN, "test_good.py", "test_bad.py", "-m", "slow")
+    result = pytester.runpytest_inprocess(*PLUGIN, "test_good.py", "test_bad.py", "-m", "slow")
     result.assert_outcomes(failed=1, deselected=1)
-    result = pytester.runpytest_subprocess(*PLUGIN, "test_unmarked.py", "-k", "test_x")
+    result = pytester.runpytest_inprocess(*PLUGIN, "test_unmarked.py", "-k", "test_x")
     result.assert_outcomes(passed=1, deselected=3)
 
 
@@ -307,7 +306,7 @@ def test_the_plugin_of_launch_pytest_may_be_there_too(pytester):
         pass
     """
     (pytester.path / "test_new.py").write_text(textwrap.dedent(fixture))
-    result = pytester.runpytest_subprocess("-p", "launch_pytest.plugin", *PLUGIN, "test_old.py", "test_new.py")
+    result = pytester.runpytest_inprocess("-p", "launch_pytest.plugin", *PLUGIN, "test_old.py", "test_new.py")
     result.assert_outcomes(passed=3)
 
 
@@ -323,7 +322,7 @@ def test_pytest_passes_launch_arguments(pytester):
             proc_output.assertWaitFor('ready given', stream='stdout')
     """
     write(pytester.path / "test_it.py", body)
-    pytester.runpytest_subprocess(*PLUGIN, "test_it.py", "--launch-args", "word:=given").assert_outcomes(passed=1)
+    pytester.runpytest_inprocess(*PLUGIN, "test_it.py", "--launch-args", "word:=given").assert_outcomes(passed=1)
 
 
 # Pieces -------------------------------------------------------------------------------------------------
