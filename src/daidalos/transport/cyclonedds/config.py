@@ -46,6 +46,10 @@ _MULTICAST_OFF = "<General><AllowMulticast>false</AllowMulticast></General>"
 _MULTICAST_WITHIN_MACHINE = (
     "<General><AllowMulticast>spdp</AllowMulticast><MulticastTimeToLive>0</MulticastTimeToLive></General>"
 )
+# A process that was stopped for longer than its lease (a laptop that sleeps, a breakpoint) is lost to the others, and
+# they to it. Where multicast does not announce them, the library from version 11 on asks at the addresses it knew only
+# every 30 s and forgets them after a minute: two such processes would find each other late or never.
+_REDISCOVERY = "<SPDPInterval>5s</SPDPInterval><InitialLocatorPruneDelay>inf</InitialLocatorPruneDelay>"
 # Datagrams as large as UDP permits: a large message is acknowledged some 40 times sooner. Beyond this machine, where
 # a datagram of several packets is lost with any of them, the library's own sizes stay.
 _LARGE_DATAGRAMS = "<General><MaxMessageSize>65500B</MaxMessageSize><FragmentSize>65000B</FragmentSize></General>"
@@ -61,7 +65,7 @@ def _peers(environment: Environment) -> str:
     highest = (_LAST_PORT - FIRST_PORT - PORTS_PER_DOMAIN * environment.domain - _DATA_PORT_OFFSET) // 2
     listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (_LOCALHOST, *environment.static_peers))
     return (
-        "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+        f"<Discovery>{_REDISCOVERY}<ParticipantIndex>auto</ParticipantIndex>"
         f"<MaxAutoParticipantIndex>{min(_MAX_PARTICIPANTS, highest)}</MaxAutoParticipantIndex>"
         f'<Peers AddLocalhost="true">{listed}</Peers></Discovery>'
     )
