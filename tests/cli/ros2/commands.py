@@ -8,6 +8,10 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
+from daidalos.cli.ros2 import main
+
 TIMEOUT_S = 40.0
 ROS2 = [sys.executable, "-m", "daidalos.cli.ros2"]
 
@@ -19,6 +23,15 @@ class Result:
     status: int | None
     out: str
     err: str
+
+
+def ros2_here(*words: str, capsys: pytest.CaptureFixture[str]) -> Result:
+    """Run a command that needs no graph, in this process."""
+    try:
+        status = main(list(words))
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else 1
+    return Result(status, *capsys.readouterr())
 
 
 def environment(domain: int, **more: str) -> dict[str, str]:

@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from .commands import ROS2, ros2
+from .commands import ROS2, ros2, ros2_here
 
 NODE = """
 import rclpy
@@ -51,8 +51,8 @@ _BRIEFLY = ["topic", "pub", "--once", "--max-wait-time-secs", "1.1"]
         ("topic echo /foo my_msgs/msg/Num", 1, ["message type is invalid", "The package 'my_msgs' is not here."]),
     ],
 )
-def test_mistakes_that_need_no_graph(env, line, status, lines):
-    _check(ros2(*line.split(), env=env), status, lines)
+def test_mistakes_that_need_no_graph(capsys, line, status, lines):
+    _check(ros2_here(*line.split(), capsys=capsys), status, lines)
 
 
 @pytest.fixture

@@ -1,13 +1,10 @@
-"""The command `ros2`.
-
-Ctrl-C may come while its modules are still being imported. Until they are, it has its quiet default (through the
-built-in module, as ``signal`` itself takes a while to import).
-"""
+"""The command `ros2`; until its modules are imported, Ctrl-C ends it without a word."""
 
 from __future__ import annotations
 
-import _signal  # type: ignore[import-not-found]
 import sys
+
+from daidalos.cli.early_interrupts import DEFAULT, handle_early_interrupts
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -22,8 +19,7 @@ def main(argv: list[str] | None = None) -> int:
         from daidalos.cli.ros2.program import run
 
         return run(argv)
-    if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
-        _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+    handle_early_interrupts(DEFAULT)
     from daidalos.cli.ros2.program import run_interruptible
 
     return run_interruptible(sys.argv[1:])

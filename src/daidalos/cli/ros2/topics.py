@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import re
 import sys
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,30 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
     from rclpy.subscription import Subscription
     from rclpy.task import Future
+
+
+def add_window_argument(parser: ArgumentParser, default: int, description: str) -> None:
+    """Declare ``--window``: how many of the latest messages count.
+
+    Parameters
+    ----------
+    parser
+        Of the verb.
+    default
+        The number where none is given.
+    description
+        Shown by ``--help``, before the default.
+    """
+    from ros2topic.api import positive_int
+
+    parser.add_argument(
+        "--window",
+        "-w",
+        type=positive_int,
+        default=default,
+        metavar="WINDOW",
+        help=f"{description} (default: {default})",
+    )
 
 
 def topic_class(node: Node, topic: str, message_type: str | None = None, *, wait: bool = False) -> Any:

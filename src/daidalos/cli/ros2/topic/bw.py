@@ -9,11 +9,10 @@ from collections import deque
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from ros2cli.qos import add_qos_arguments
-from ros2topic.api import positive_int
 
 from daidalos.cli.ros2.completion import complete_topics
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.topics import spin, subscribe, topic_class
+from daidalos.cli.ros2.topics import add_window_argument, spin, subscribe, topic_class
 
 DEFAULT_WINDOW_SIZE = 100
 
@@ -28,14 +27,7 @@ class BwVerb(Verb):
             parser.add_argument("topic", metavar="topic_name", help="Topic name to monitor for bandwidth utilization")
         )
         add_qos_arguments(parser, "subscribe", "sensor_data")
-        parser.add_argument(
-            "--window",
-            "-w",
-            type=positive_int,
-            default=DEFAULT_WINDOW_SIZE,
-            metavar="WINDOW",
-            help=f"maximum window size, in # of messages, for calculating rate (default: {DEFAULT_WINDOW_SIZE})",
-        )
+        add_window_argument(parser, DEFAULT_WINDOW_SIZE, "maximum window size, in # of messages, for calculating rate")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the bandwidth every second until Ctrl-C."""

@@ -10,12 +10,11 @@ from typing import Any
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from ros2cli.qos import add_qos_arguments
-from ros2topic.api import positive_int
 
 from daidalos.cli.ros2.completion import complete_topics
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.topics import spin, subscribe, topic_class
+from daidalos.cli.ros2.topics import add_window_argument, spin, subscribe, topic_class
 
 DEFAULT_WINDOW_SIZE = 10000
 _S = 1_000_000_000
@@ -31,13 +30,8 @@ class DelayVerb(Verb):
             parser.add_argument("topic", metavar="topic_name", help="Topic name to calculate the delay for")
         )
         add_qos_arguments(parser, "subscribe", "sensor_data")
-        parser.add_argument(
-            "--window",
-            "-w",
-            type=positive_int,
-            default=DEFAULT_WINDOW_SIZE,
-            metavar="WINDOW",
-            help=f"window size, in # of messages, for calculating rate, string to (default: {DEFAULT_WINDOW_SIZE})",
+        add_window_argument(
+            parser, DEFAULT_WINDOW_SIZE, "window size, in # of messages, for calculating rate, string to"
         )
 
     def main(self, *, args: Namespace) -> Status:

@@ -1,18 +1,19 @@
 // Joints: sliders for a robot's joints, the window of a joint_state_publisher_gui.
-import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import type { Studio } from "../app/studio";
 import type { ServiceInfo } from "../contract";
-import { Choice, RangeField } from "../ui/editors";
+import { RangeField } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { Joints, type Joint } from "./joints/joints";
+import { NodeChoice, useChosenNode } from "./node_choice";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import "../styles/joints.css";
 
-function JointsPanel({ studio, visible, params, remember }: PanelProps) {
+function JointsPanel(props: PanelProps) {
+  const { studio, visible } = props;
   const nodes = publishersIn(studio.session.services.value);
-  const chosen = useSignal(typeof params.node === "string" ? params.node : "");
+  const chosen = useChosenNode(props);
   const node = nodes.includes(chosen.value) ? chosen.value : nodes[0];
   if (node === undefined) {
     return (
@@ -23,19 +24,7 @@ function JointsPanel({ studio, visible, params, remember }: PanelProps) {
   }
   return (
     <div class="column">
-      {nodes.length > 1 && (
-        <div class="bar">
-          <Choice
-            label="Node"
-            value={node}
-            options={nodes.map((name) => [name, name])}
-            onChange={(name) => {
-              chosen.value = name;
-              remember({ node: name });
-            }}
-          />
-        </div>
-      )}
+      {nodes.length > 1 && <NodeChoice nodes={nodes} node={node} chosen={chosen} remember={props.remember} />}
       <Sliders key={node} studio={studio} node={node} isVisible={visible.value} />
     </div>
   );

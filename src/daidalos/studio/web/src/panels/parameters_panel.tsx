@@ -8,32 +8,24 @@ import { isArray, isInteger, type Parameter, type Value } from "../parameters/va
 import { Choice, RangeField, TextField, Toggle } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { SearchField } from "../ui/search";
+import { NodeChoice, useChosenNode } from "./node_choice";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import "../styles/parameters.css";
 
 const SERVICE = "/describe_parameters";
 const TYPE = "rcl_interfaces/srv/DescribeParameters";
 
-function ParametersPanel({ studio: { session }, visible, params, remember }: PanelProps) {
+function ParametersPanel(props: PanelProps) {
+  const { session } = props.studio;
   const nodes = session.services.value
     .filter(({ name, type }) => type === TYPE && name.endsWith(SERVICE) && !/(^|\/)_/.test(name))
     .map(({ name }) => name.slice(0, -SERVICE.length));
-  const node = useSignal(typeof params.node === "string" ? params.node : "");
+  const node = useChosenNode(props);
   return (
     <div class="column">
-      <div class="bar">
-        <Choice
-          label="Node"
-          value={node.value}
-          options={nodes.map((name) => [name, name])}
-          onChange={(name) => {
-            node.value = name;
-            remember({ node: name });
-          }}
-        />
-      </div>
+      <NodeChoice nodes={nodes} node={node.value} chosen={node} remember={props.remember} />
       {nodes.includes(node.value) ? (
-        <Editors key={node.value} session={session} node={node.value} isVisible={visible.value} />
+        <Editors key={node.value} session={session} node={node.value} isVisible={props.visible.value} />
       ) : (
         <Empty icon="sliders" title={node.value ? `${node.value} is not running` : "No node selected"}>
           {nodes.length ? "Select one above." : "No node has parameter services."}

@@ -9,6 +9,7 @@ import { NodeParameters } from "../parameters/node_parameters";
 import { Transform } from "../tf/buffer";
 import { Choice, NumberField, TextField, Toggle } from "../ui/editors";
 import { Empty } from "../ui/empty";
+import { NodeChoice, useChosenNode } from "./node_choice";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import { type Pose2, SlamNode, slamNodes, type Start, toPlanar } from "./slam_toolbox/slam_node";
 import "../styles/slam_toolbox.css";
@@ -24,25 +25,14 @@ const DEGREE = Math.PI / 180;
 
 type StartChoice = Start | "current";
 
-function SlamToolboxPanel({ studio, visible, params, remember }: PanelProps) {
+function SlamToolboxPanel(props: PanelProps) {
+  const { studio, visible } = props;
   const nodes = slamNodes(studio.session.services.value);
-  const chosen = useSignal(typeof params.node === "string" ? params.node : "");
+  const chosen = useChosenNode(props);
   const node = nodes.includes(chosen.value) ? chosen.value : (nodes[0] ?? "");
   return (
     <div class="column">
-      {nodes.length > 1 && (
-        <div class="bar">
-          <Choice
-            label="Node"
-            value={node}
-            options={nodes.map((name) => [name, name])}
-            onChange={(name) => {
-              chosen.value = name;
-              remember({ node: name });
-            }}
-          />
-        </div>
-      )}
+      {nodes.length > 1 && <NodeChoice nodes={nodes} node={node} chosen={chosen} remember={props.remember} />}
       {node ? (
         <Controls key={node} studio={studio} name={node} isVisible={visible.value} />
       ) : (
