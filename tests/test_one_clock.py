@@ -29,6 +29,7 @@ ALLOWED = {
     "nodes/joy/_node.py": "when to look for a device again",
     "nodes/keyboard.py": "how long a person has to press a key",
     "nodes/nav2_planner/planner_server.py": "the computing time that the result of a plan reports",
+    "nodes/nav2_smoother/smoother_server.py": "duration of smoothing",
     "nodes/ros_gz_sim/create.py": "how long a person waits for a simulator whose time may stand still",
     "nodes/slam_toolbox/_slam_toolbox.py": "start and waiting scans while simulated time stands still",
     "nodes/tf2_tools/view_frames.py": "the name of a file",

@@ -26,12 +26,12 @@ from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
 from daidalos.navigation.costmap.layers.obstacle_layer import (
-    Observation,
     ObservationSource,
     ObstacleLayer,
     ObstacleLayerParameters,
 )
 from daidalos.navigation.costmap.layers.static_layer import StaticLayer
+from daidalos.navigation.costmap.observation import Observation
 from daidalos.navigation.errors import BehaviorError, ControllerError, PlannerError
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
 from daidalos.navigation.trees.behavior_tree import DEFAULT_TREE, BehaviorTree

@@ -24,7 +24,7 @@ def test_critics_need_no_namespace():
     ("kind", "name", "message"),
     [
         (extensions.PLANNERS, "nav2_navfn_planner::NavfnPlaner", "did you mean 'nav2_navfn_planner::NavfnPlanner'"),
-        (extensions.COSTMAP_LAYERS, "nav2_costmap_2d::VoxelLayer", "no costmap layer 'nav2_costmap_2d::VoxelLayer'; "),
+        (extensions.COSTMAP_LAYERS, "nav2_costmap_2d::BoxLayer", "no costmap layer 'nav2_costmap_2d::BoxLayer'; "),
         (extensions.CONTROLLERS, "dwb_core::DWBLocalPlanner", "no navigation controller 'dwb_core::DWBLocalPlanner'; "),
         (extensions.CRITICS, "CostCritik", "did you mean 'mppi::critics::CostCritic'"),
         (extensions.GOAL_CHECKERS, "nav2_controller::SimpleGoalCheker", "did you mean 'nav2_controller::SimpleGoalCh"),
@@ -33,11 +33,11 @@ def test_critics_need_no_namespace():
             "SimpleGoalChecker",
             "there is no progress checker 'SimpleGoalChecker'; there are: ",
         ),
-        (extensions.SMOOTHERS, "nav2_smoother::Savitzky", "there are: nav2_smoother::SimpleSmoother"),
+        (extensions.SMOOTHERS, "nav2_smoother::Simple", "nav2_smoother::SimpleSmoother"),
         (
             extensions.BEHAVIORS,
-            "nav2_behaviors::AssistedTeleop",
-            "there is no behavior 'nav2_behaviors::AssistedTeleop'",
+            "nav2_behaviors::AssistTeleop",
+            "did you mean 'nav2_behaviors::AssistedTeleop'",
         ),
         (extensions.TREE_NODES, "Spim", "did you mean 'Spin'"),
     ],

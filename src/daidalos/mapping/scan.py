@@ -1,6 +1,7 @@
 """Laser scans: conversion of ranges to points with normals in the frame of the robot's base."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,8 @@ class LaserScanData:
         Pose (x, y, yaw) of the sensor in the frame of the base.
     sensor_tilt : tuple of float
         Roll and pitch [rad] of the sensor, applied before its yaw; a roll of pi is a lidar mounted upside down.
+    sensor_height : float
+        Height [m] of the sensor over the base.
     """
 
     ranges: NDArray[np.floating]
@@ -44,6 +47,11 @@ class LaserScanData:
     time_increment: float = 0.0
     sensor_pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
     sensor_tilt: tuple[float, float] = (0.0, 0.0)
+    sensor_height: float = 0.0
+
+    def lifted(self, height: float) -> Self:
+        """Return the scan of a sensor that is higher by so much [m]."""
+        return replace(self, sensor_height=self.sensor_height + height)
 
 
 @dataclass(frozen=True)

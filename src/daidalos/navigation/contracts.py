@@ -25,6 +25,7 @@ from daidalos.common.errors import Location
 from daidalos.common.extensions import Kind, find
 from daidalos.navigation.costmap.costmap import FREE_SPACE, Bounds, Costmap, Window
 from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.costmap.voxels import VoxelGrid
 
 if TYPE_CHECKING:
     from daidalos.navigation.controllers.mppi.rollouts import Rollouts
@@ -331,16 +332,18 @@ class Critic(NavigationExtension):
 
 @dataclass(frozen=True)
 class Input:
-    """Topic that a costmap layer subscribes to.
+    """Topic that a costmap layer, a behaviour or a task at a waypoint subscribes to.
 
     Attributes
     ----------
     topic : str
         Its topic; empty for the costmap's own ``map_topic``.
     type : type
-        `OccupancyGrid`, or `LaserScanData`.
+        For a layer `OccupancyGrid`, `LaserScanData` or `CloudData`. For a behaviour `numpy.ndarray`, for a velocity
+        (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`, for an empty message, as for a task at a waypoint.
     take : callable
-        Called with a map; or with a scan, the base pose at its time in the costmap's frame, and that time [s].
+        Called with a map; or with a scan or cloud, the base pose at its time in the costmap's frame, and that time
+        [s]; or with a velocity and the time [s]; or with nothing.
     """
 
     topic: str
@@ -358,6 +361,16 @@ class Layer(NavigationExtension):
     """
 
     clearable: bool = False
+
+    @property
+    def enabled(self) -> bool:
+        """Whether the layer is used: its parameter `enabled`, where it has one."""
+        return bool(getattr(self.parameters, "enabled", True))
+
+    @property
+    def voxels(self) -> VoxelGrid | None:
+        """What the layer knows in space, for display; None for layers that are flat."""
+        return None
 
     @property
     def inputs(self) -> tuple[Input, ...]:
@@ -437,10 +450,18 @@ class Behavior(NavigationExtension, Generic[Command]):
         Class attribute: type of the action, such as ``nav2_msgs/action/Spin``.
     feedback : str
         Class attribute: field of the action's feedback for what is done so far; empty where there is none.
+    moves : bool
+        Class attribute: whether it moves the robot, and so needs to know what is around it.
     """
 
     action: ClassVar[str]
     feedback: ClassVar[str] = ""
+    moves: ClassVar[bool] = True
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """Topics that the behaviour subscribes to."""
+        return ()
 
     @property
     def period(self) -> float:
@@ -492,4 +513,37 @@ class Behavior(NavigationExtension, Generic[Command]):
         ------
         BehaviorError
             It cannot go on: `CollisionAhead` or `TimedOut`.
+        """
+
+
+class WaypointTask(NavigationExtension):
+    """Task that is carried out at each waypoint."""
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """Topics that the task subscribes to."""
+        return ()
+
+    @abstractmethod
+    def start(self, index: int, pose: Array, now: float) -> None:
+        """Start the task.
+
+        Parameters
+        ----------
+        index : int
+            Which waypoint the robot has reached, from 0.
+        pose : ndarray, shape (3,)
+            Pose (x, y, yaw) of the waypoint in its own frame.
+        now : float
+            Time [s].
+        """
+
+    @abstractmethod
+    def step(self, now: float) -> bool:
+        """Return whether the task is done at a time [s].
+
+        Raises
+        ------
+        TaskFailed
+            It cannot be done.
         """

@@ -78,6 +78,18 @@ class PatienceExceeded(ControllerError):
     code = "PATIENCE_EXCEEDED"
 
 
+class SmootherError(NavigationError):
+    """Failure to smooth a path; the message gives the reason."""
+
+    code = "FAILED_TO_SMOOTH_PATH"
+
+
+class PathInCollision(SmootherError):
+    """Smoothed path that touches an obstacle."""
+
+    code = "SMOOTHED_PATH_IN_COLLISION"
+
+
 class BehaviorError(NavigationError):
     """Failed behavior; the message gives the reason."""
 
@@ -98,3 +110,9 @@ class InvalidInput(BehaviorError):
     """Invalid command."""
 
     code = "INVALID_INPUT"
+
+
+class TaskFailed(NavigationError):
+    """Failure of the task at a waypoint; the message gives the reason."""
+
+    code = "TASK_EXECUTOR_FAILED"

@@ -69,6 +69,13 @@ BEHAVIORS: Kind[contracts.Behavior[object]] = Kind(
     "a motion that an action asks for; named in `behavior_plugins` of the behavior server",
     partial(classes_in, "daidalos.navigation.behaviors"),
 )
+WAYPOINT_TASKS: Kind[contracts.WaypointTask] = Kind(
+    "waypoint_task",
+    "daidalos.waypoint_tasks",
+    f"{_CONTRACTS}:WaypointTask",
+    "what a robot does at each waypoint; named in `waypoint_task_executor_plugin` of the waypoint follower",
+    partial(classes_in, "daidalos.navigation.waypoint_tasks"),
+)
 TREE_NODES: Kind[TreeNode] = Kind(
     "tree_node",
     "daidalos.tree_nodes",
@@ -88,5 +95,6 @@ KINDS = (
     GOAL_CHECKERS,
     PROGRESS_CHECKERS,
     BEHAVIORS,
+    WAYPOINT_TASKS,
     TREE_NODES,
 )

@@ -13,8 +13,10 @@ from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
-from daidalos.navigation.costmap.layers.obstacle_layer import Observation, ObstacleLayer
+from daidalos.navigation.costmap.layers.obstacle_layer import ObstacleLayer
 from daidalos.navigation.costmap.layers.static_layer import StaticLayer
+from daidalos.navigation.costmap.layers.voxel_layer import VoxelLayer
+from daidalos.navigation.costmap.observation import Observation
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
 from daidalos.navigation.smoothers.simple_smoother import SimpleSmoother
 
@@ -40,9 +42,11 @@ def _costmap() -> Costmap:
     scan = LaserScanData(np.array([1.0, np.inf, 1.0]), 0.0, 0.1, 0.1, 10.0)
     pose = np.array([1.0, 2.0, 0.0])
     obstacles.add_observation(Observation.from_scan(scan, pose, 0.0))
+    voxels = VoxelLayer(None, NavigationContext(footprint=OUTLINE))
+    voxels.add_observation(Observation.from_scan(scan, pose, 0.0))
     layered = LayeredCostmap(
         CostmapParameters(),
-        [static, obstacles, InflationLayer(None, NavigationContext(footprint=Footprint.circle(0.2)))],
+        [static, obstacles, voxels, InflationLayer(None, NavigationContext(footprint=Footprint.circle(0.2)))],
     )
     layered.update(pose, 0.0)
     return layered.costmap

@@ -12,6 +12,7 @@ from daidalos.common.pose3 import quaternion_from_yaw, rotation_matrix, yaw_from
 
 if TYPE_CHECKING:
     from daidalos.mapping.scan import LaserScanData
+    from daidalos.navigation.costmap.observation import CloudData
 
 
 def twist_message(velocity: Any, frame: str | None, stamp: Any) -> Any:
@@ -22,6 +23,11 @@ def twist_message(velocity: Any, frame: str | None, stamp: Any) -> Any:
     x, y, yaw = (float(value) for value in velocity)
     twist = Twist(linear=Vector3(x=x, y=y, z=0.0), angular=Vector3(x=0.0, y=0.0, z=yaw))
     return twist if frame is None else TwistStamped(header=Header(frame_id=frame, stamp=stamp), twist=twist)
+
+
+def velocity_of(twist: Any) -> Array:
+    """Return the planar velocity (x [m/s], y [m/s], yaw [rad/s]) of a ``geometry_msgs/msg/Twist``."""
+    return np.array([twist.linear.x, twist.linear.y, twist.angular.z])
 
 
 def yaw_of(quaternion: Any) -> float:
@@ -138,10 +144,13 @@ class SensorMount(NamedTuple):
         Pose (x, y, yaw) in the frame of the base.
     tilt : tuple of float
         Roll and pitch [rad], applied before the yaw.
+    height : float
+        Height [m] over the base.
     """
 
     pose: Array
     tilt: tuple[float, float]
+    height: float = 0.0
 
 
 def mount_of_transform(transform: Any) -> SensorMount:
@@ -151,7 +160,8 @@ def mount_of_transform(transform: Any) -> SensorMount:
     pitch = float(np.arcsin(np.clip(-matrix[2, 0], -1.0, 1.0)))
     roll = float(np.arctan2(matrix[2, 1], matrix[2, 2]))
     yaw = float(np.arctan2(matrix[1, 0], matrix[0, 0]))
-    return SensorMount(np.array([transform.translation.x, transform.translation.y, yaw]), (roll, pitch))
+    offset = transform.translation
+    return SensorMount(np.array([offset.x, offset.y, yaw]), (roll, pitch), offset.z)
 
 
 def scan_data(scan: Any, sensor: Array | SensorMount) -> LaserScanData:
@@ -166,7 +176,7 @@ def scan_data(scan: Any, sensor: Array | SensorMount) -> LaserScanData:
     """
     from daidalos.mapping.scan import LaserScanData
 
-    pose, tilt = sensor if isinstance(sensor, SensorMount) else (sensor, (0.0, 0.0))
+    pose, tilt, height = sensor if isinstance(sensor, SensorMount) else SensorMount(sensor, (0.0, 0.0))
     x, y, yaw = (float(value) for value in pose)
     return LaserScanData(
         ranges=np.frombuffer(scan.ranges, dtype=np.float32),
@@ -177,4 +187,25 @@ def scan_data(scan: Any, sensor: Array | SensorMount) -> LaserScanData:
         time_increment=scan.time_increment,
         sensor_pose=(x, y, yaw),
         sensor_tilt=tilt,
+        sensor_height=height,
     )
+
+
+def cloud_data(cloud: Any, transform: Any) -> CloudData:
+    """Return a ``sensor_msgs/msg/PointCloud2`` as arrays in the frame of the base.
+
+    Parameters
+    ----------
+    cloud
+        The message.
+    transform
+        ``geometry_msgs/msg/Transform`` from the base to the sensor.
+    """
+    from sensor_msgs_py.point_cloud2 import read_points_numpy
+
+    from daidalos.navigation.costmap.observation import CloudData
+
+    q, offset = transform.rotation, transform.translation
+    sensor = np.array([offset.x, offset.y, offset.z])
+    points = read_points_numpy(cloud, ["x", "y", "z"]).reshape(-1, 3).astype(np.float64)
+    return CloudData(points @ rotation_matrix((q.x, q.y, q.z, q.w)).T + sensor, sensor)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -32,8 +33,18 @@ class ExtensionMaker:
     def _warn(self, line: str) -> None:
         self._node.get_logger().warning(line)
 
-    def make(self, kind: Kind[T], name: str, default: str) -> T:
+    def make(self, kind: Kind[T], name: str, default: str, defaults: Mapping[str, Any] | None = None) -> T:
         """Create the extension of the parameter ``<name>.plugin``.
+
+        Parameters
+        ----------
+        kind : Kind
+        name : str
+            As in parameter files.
+        default : str
+            Class where the parameter is not given.
+        defaults : mapping or None
+            Defaults of the extension's parameters that are known only now, by name.
 
         Raises
         ------
@@ -42,10 +53,10 @@ class ExtensionMaker:
         """
         parameter = f"{name}.plugin"
         chosen = declare_name(self._node, parameter, default, "Class of the plugin.")
-        made: T = self._make(find(kind, chosen, asked_by=location_of(self._node, parameter)), name)
+        made: T = self._make(find(kind, chosen, asked_by=location_of(self._node, parameter)), name, defaults)
         return made
 
-    def _make(self, cls: Any, name: str) -> Any:
+    def _make(self, cls: Any, name: str, defaults: Mapping[str, Any] | None = None) -> Any:
         def make(kind: Kind[Any], chosen: str, parameter: str, below: str) -> Any:
             found = find(kind, chosen, asked_by=location_of(self._node, f"{name}.{parameter}"))
             return self._make(found, f"{name}.{below}" if below else name)
@@ -54,6 +65,6 @@ class ExtensionMaker:
         made: list[Any] = []
         parameters = None
         if cls.Parameters is not None:
-            parameters = declare(self._node, cls.Parameters, name, lambda new: made[0].reconfigure(new))
+            parameters = declare(self._node, cls.Parameters, name, lambda new: made[0].reconfigure(new), defaults)
         made.append(cls(parameters, context))
         return made[0]

@@ -72,15 +72,14 @@ class SensorPoses:
         self._logger = logger
         self._mounts: dict[str, SensorMount] = {}
 
-    def find(self, frame: str) -> Any | None:
-        """Return the pose (x, y, yaw) of the sensor of a frame, None while it is not known."""
+    def find(self, frame: str) -> SensorMount | None:
+        """Return how the sensor of a frame is mounted, None while it is not known, which is logged."""
         mount = self.mount(frame)
         if mount is None:
             self._logger.info(
                 f"waiting for the transform from {frame} to {self._base_frame}", throttle_duration_sec=5.0
             )
-            return None
-        return mount.pose
+        return mount
 
     def mount(self, frame: str) -> SensorMount | None:
         """Return how the sensor of a frame is mounted, None while it is not known."""

@@ -5,12 +5,14 @@ import math
 import numpy as np
 import pytest
 
+from daidalos.navigation.behaviors.assisted_teleop import AssistedTeleop
 from daidalos.navigation.behaviors.back_up import BackUp, BackUpCommand
 from daidalos.navigation.behaviors.collision import contact_ahead
 from daidalos.navigation.behaviors.drive_on_heading import DriveOnHeading, DriveOnHeadingCommand
 from daidalos.navigation.behaviors.spin import Spin, SpinCommand
 from daidalos.navigation.behaviors.wait import Wait, WaitCommand
 from daidalos.navigation.contracts import NavigationContext
+from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.errors import CollisionAhead, InvalidInput, TimedOut
 
@@ -139,3 +141,43 @@ def test_contact_ahead_follows_arcs():
     assert contact_ahead(costmap, ROUND, np.zeros(3), 0.5, 0.8, 2.0)
     assert not contact_ahead(costmap, ROUND, np.zeros(3), 0.5, -0.8, 2.0)
     assert not contact_ahead(costmap, ROUND, np.zeros(3), 0.5, 0.8, 0.3)
+
+
+class TestAssistedTeleop:
+    def behave(self, costmap, *, speed=0.4, now=10.0, sent=10.0, **goal):
+        behavior = AssistedTeleop(None, NavigationContext(footprint=Footprint.circle(0.2), frequency=10.0))
+        behavior.start(goal.get("time_allowance", 0.0), np.array([2.0, 2.0, 0.0]), 9.0)
+        behavior.add_command(np.array([speed, 0.0, 0.0]), sent)
+        return behavior, behavior.step(np.array([2.0, 2.0, 0.0]), np.zeros(3), costmap, now)
+
+    def ground(self, *, wall_at=None):
+        costmap = Costmap.filled(80, 80, 0.05, (0.0, 0.0))
+        if wall_at is not None:
+            column = round(wall_at / 0.05)
+            costmap.costs[:, column:] = 254
+            costmap.costs[:, column - 4 : column] = 253
+        return costmap
+
+    def test_a_velocity_on_free_ground_is_passed_on(self):
+        _, step = self.behave(self.ground())
+        assert step.velocity.tolist() == [0.4, 0.0, 0.0]
+        assert not step.done
+        assert step.feedback == pytest.approx(1.0)
+
+    def test_it_slows_down_in_proportion_to_the_time_until_a_contact(self):
+        _, step = self.behave(self.ground(wall_at=2.4))
+        assert 0.1 < step.velocity[0] <= 0.2
+        _, step = self.behave(self.ground(wall_at=2.25))
+        assert step.velocity[0] < 0.05
+
+    @pytest.mark.parametrize(("sent", "speed"), [(9.4, 0.4), (11.0, 0.4), (10.0, np.nan)])
+    def test_it_stands_where_the_persons_velocity_is_old_ahead_or_not_finite(self, sent, speed):
+        _, step = self.behave(self.ground(), sent=sent, speed=speed)
+        assert not step.velocity.any()
+
+    def test_it_ends_when_told_and_fails_when_its_time_is_over(self):
+        behavior, _ = self.behave(self.ground())
+        behavior.end()
+        assert behavior.step(np.zeros(3), np.zeros(3), self.ground(), 10.1).done
+        with pytest.raises(TimedOut):
+            self.behave(self.ground(), time_allowance=0.5)

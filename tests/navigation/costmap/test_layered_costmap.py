@@ -9,8 +9,9 @@ from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
-from daidalos.navigation.costmap.layers.obstacle_layer import Observation, ObstacleLayer
+from daidalos.navigation.costmap.layers.obstacle_layer import ObstacleLayer
 from daidalos.navigation.costmap.layers.static_layer import StaticLayer
+from daidalos.navigation.costmap.observation import Observation
 
 ROBOT = Footprint.circle(0.2)
 HERE = np.array([1.0, 1.0, 0.0])

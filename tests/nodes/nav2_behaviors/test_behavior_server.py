@@ -173,7 +173,10 @@ def test_the_published_footprint_is_checked_for_collisions(executor: SingleThrea
     timer = robot.create_timer(0.05, lambda: publisher.publish(outline))
     taken = Future()
     timer_of_check = robot.create_timer(
-        0.05, lambda: taken.set_result(None) if len(server._footprint.polygon) == 4 and not taken.done() else None
+        0.05,
+        lambda: (
+            taken.set_result(None) if len(server._surroundings.footprint.polygon) == 4 and not taken.done() else None
+        ),
     )
     executor.spin_until_future_complete(taken, TIMEOUT_S)
     for one in (timer, timer_of_check):

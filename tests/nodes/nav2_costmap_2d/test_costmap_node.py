@@ -124,9 +124,9 @@ def test_an_obstacle_is_marked_where_the_sensor_sees_it_and_cleared_when_it_is_g
     stage: Callable[[dict[str, Any]], Stage],
 ) -> None:
     bench = Bench(stage({NODE: ROLLING})).start()
-    bench.robot.pose = np.array([1.0, 0.0, math.pi / 2])
+    bench.robot.pose = np.array([1.0, 0.02, math.pi / 2])
     bench.stage.step()
-    # The laser is at (1, 0.3) and looks along -y; 90 degrees to its left is +x.
+    # The laser is at (1, 0.32) and looks along -y; 90 degrees to its left is +x.
     bench.see({90: 1.02})
     costmap = bench.step_until(lambda costmap: (costmap.costs == LETHAL).any())
     assert cost(costmap, 2.02, 0.32) == LETHAL

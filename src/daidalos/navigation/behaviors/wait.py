@@ -24,6 +24,7 @@ class Wait(Behavior[WaitCommand]):
     names = ("nav2_behaviors::Wait",)
     action = "nav2_msgs/action/Wait"
     feedback = "time_left"
+    moves = False
     _until = 0.0
 
     @classmethod

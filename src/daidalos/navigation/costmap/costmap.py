@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from daidalos.common.arrays import Array
 from daidalos.navigation.errors import NavigationError
 
 Costs = NDArray[np.uint8]
+T = TypeVar("T", np.uint8, np.uint16)
 
 FREE_SPACE = 0
 MAX_NON_OBSTACLE = 252
@@ -160,14 +162,29 @@ class Costmap:
         self.origin = wanted
         if (right, up, width, height) == (0, 0, self.width, self.height):
             return
-        moved = np.full((height, width), value, dtype=np.uint8)
-        rows = slice(max(up, 0), min(up + height, self.height))
-        columns = slice(max(right, 0), min(right + width, self.width))
-        if rows.start < rows.stop and columns.start < columns.stop:
-            moved[rows.start - up : rows.stop - up, columns.start - right : columns.stop - right] = self.costs[
-                rows, columns
-            ]
-        self.costs = moved
+        self.costs = displaced(self.costs, right, up, (height, width), value)
+
+
+def displaced(cells: NDArray[T], right: int, up: int, shape: tuple[int, int], value: int) -> NDArray[T]:
+    """Return a window of a grid of cells.
+
+    Parameters
+    ----------
+    cells : ndarray, shape (height, width)
+        The grid.
+    right, up : int
+        Column and row of the grid at which the window begins; they may be outside.
+    shape : tuple of int
+        Rows and columns of the window.
+    value : int
+        Value of cells of the window that are outside of the grid.
+    """
+    moved = np.full(shape, value, dtype=cells.dtype)
+    rows = slice(max(up, 0), min(up + shape[0], cells.shape[0]))
+    columns = slice(max(right, 0), min(right + shape[1], cells.shape[1]))
+    if rows.start < rows.stop and columns.start < columns.stop:
+        moved[rows.start - up : rows.stop - up, columns.start - right : columns.stop - right] = cells[rows, columns]
+    return moved
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,7 @@ class LayeredCostmap:
             self.default,
         )
         self._pending = EVERYWHERE
+        self._used: tuple[Layer, ...] = ()
         for layer in self.layers:
             layer.match_size(self.costmap)
 
@@ -79,13 +80,14 @@ class LayeredCostmap:
             The cells that were put together anew.
         """
         moved = self._follow_robot(robot_pose) if self.parameters.rolling_window else self._follow_map()
-        bounds = EVERYWHERE if moved else self._pending
-        self._pending = Bounds()
-        for layer in self.layers:
+        used = tuple(layer for layer in self.layers if layer.enabled)
+        bounds = EVERYWHERE if moved or used != self._used else self._pending
+        self._pending, self._used = Bounds(), used
+        for layer in used:
             bounds = layer.update_bounds(robot_pose, now, bounds)
         window = self.costmap.window_of(bounds)
         self.costmap.costs[window.slices] = self.default
-        for layer in self.layers:
+        for layer in used:
             layer.update_costs(self.costmap, window)
         return window
 

@@ -9,7 +9,7 @@ from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import Smoother
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION, Costmap, Costs
-from daidalos.navigation.paths import with_headings
+from daidalos.navigation.smoothers.parts import smooth_parts
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,9 @@ class SimpleSmootherParameters(Parameters):
     max_its: int = parameter(1000, "Largest number of iterations.", minimum=1)
     w_data: float = parameter(0.2, "Weight of staying near the path.", minimum=0.0)
     w_smooth: float = parameter(0.3, "Weight of smoothness.", minimum=0.0)
+    do_refinement: bool = parameter(True, "Whether the smoothed path is smoothed again.")
+    refinement_num: int = parameter(2, "How often it is smoothed again.", minimum=0)
+    enforce_path_inversion: bool = parameter(True, "Whether the places where the robot reverses stay where they are.")
 
 
 class SimpleSmoother(Smoother):
@@ -34,21 +37,15 @@ class SimpleSmoother(Smoother):
 
     def smooth(self, path: Array, costmap: Costmap) -> Array:
         """Implement `Smoother.smooth`."""
-        if path.shape[0] < 3:
-            return path.copy()
         p = self.parameters
-        points = np.ascontiguousarray(path[:, :2])
-        smoothed = relax(
-            points,
-            costmap.costs,
-            costmap.resolution,
-            costmap.origin,
-            p.w_data,
-            p.w_smooth,
-            p.tolerance,
-            p.max_its,
-        )
-        return with_headings(smoothed, final_heading=float(path[-1, 2]))
+
+        def smooth(points: Array) -> Array:
+            return relax(
+                points, costmap.costs, costmap.resolution, costmap.origin, p.w_data, p.w_smooth, p.tolerance, p.max_its
+            )
+
+        times = 1 + p.refinement_num if p.do_refinement else 1
+        return smooth_parts(path, smooth, split=p.enforce_path_inversion, times=times)
 
 
 @compiled

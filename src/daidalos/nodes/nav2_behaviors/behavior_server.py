@@ -1,4 +1,4 @@
-"""`behavior_server`: spin, back up, drive on heading and wait, to free a stuck robot."""
+"""`behavior_server`: spin, back up, drive on heading, assisted teleoperation and wait."""
 
 from __future__ import annotations
 
@@ -13,40 +13,54 @@ from rclpy.time import Time
 from tf2_ros import Buffer, TransformException, TransformListener
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.common.pose2 import transform_points
-from daidalos.navigation.contracts import Behavior, NavigationContext
+from daidalos.navigation.contracts import Behavior, Input, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
-from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import BEHAVIORS
 from daidalos.nodes.action_results import TransformFailed
-from daidalos.nodes.conversions import pose2_of_transform, twist_message
+from daidalos.nodes.conversions import pose2_of_transform, twist_message, velocity_of
 from daidalos.nodes.cycles import Cycle, wait_until
 from daidalos.nodes.managed import ManagedNode
-from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
+from daidalos.nodes.nav2_costmap_2d._costmap_listener import CostmapListener
 from daidalos.nodes.navigation_extensions import ExtensionMaker
-from daidalos.nodes.parameters import declare
-from daidalos.nodes.qos import LATCHED
-from daidalos.samples.fields import duration_message, seconds
+from daidalos.nodes.parameters import declare, declare_without_effect
+from daidalos.samples.fields import duration_message, nanoseconds, seconds
+
+_NOTHING = Costmap.filled(1, 1, 0.05, (0.0, 0.0))
+"""Costmap for behaviours that do not look at it."""
 
 _TIMEOUT_S = 10.0
 """Timeout of a goal for the robot pose and the costmap, which arrive soon after a normal start."""
 
 
-_FOOTPRINT_TOLERANCE = 0.005
-"""Difference [m] of corners, as of rounding and of transforms, that is no other outline."""
-
 _DEFAULT_PLUGINS = {
     "spin": "nav2_behaviors::Spin",
     "backup": "nav2_behaviors::BackUp",
     "drive_on_heading": "nav2_behaviors::DriveOnHeading",
+    "assisted_teleop": "nav2_behaviors::AssistedTeleop",
     "wait": "nav2_behaviors::Wait",
 }
+
+_SHARED = ("simulate_ahead_time", "max_rotational_vel", "min_rotational_vel", "rotational_acc_lim")
+"""Parameters of the server that are defaults of the behaviours' parameters."""
+
+_WITHOUT_EFFECT = {
+    "transform_tolerance": "the age of transforms is limited by data_timeout",
+    "global_frame": "no behaviour uses the global costmap",
+    "global_costmap_topic": "no behaviour uses the global costmap",
+    "global_footprint_topic": "no behaviour uses the global costmap",
+    "bond_heartbeat_period": "there are no bonds; the lifecycle manager asks for states",
+    "action_server_result_timeout": "results are kept as long as the server runs",
+}
+"""Parameters of some of Nav2's releases that do nothing here, with the reason."""
 
 
 @dataclass(frozen=True)
 class BehaviorServerParameters(Parameters):
-    """Parameters of the node, by their Nav2 names; `robot_radius` is ours."""
+    """Parameters of the node, by their Nav2 names; `robot_radius` and `data_timeout` are ours.
+
+    The last four are for all behaviours that have a parameter of that name, and do not set it under their own.
+    """
 
     cycle_frequency: float = parameter(10.0, "Cycles per second.", unit="Hz", above=0.0, read_only=True)
     local_frame: str = parameter("odom", "Frame in which motions are measured.", not_empty=True, read_only=True)
@@ -65,6 +79,16 @@ class BehaviorServerParameters(Parameters):
     robot_radius: float = parameter(
         0.22, "Radius of the robot until its outline was received.", unit="m", above=0.0, read_only=True
     )
+    data_timeout: float = parameter(
+        1.0, "Age of the costmap or of the robot's transform from which a behaviour that moves the robot is aborted.",
+        unit="s", above=0.0,
+    )  # fmt: skip
+    simulate_ahead_time: float = parameter(
+        2.0, "How far ahead motions are checked for collisions.", unit="s", minimum=0.0, read_only=True
+    )
+    max_rotational_vel: float = parameter(1.0, "Largest turn rate.", unit="rad/s", above=0.0, read_only=True)
+    min_rotational_vel: float = parameter(0.4, "Least turn rate.", unit="rad/s", minimum=0.0, read_only=True)
+    rotational_acc_lim: float = parameter(3.2, "Largest turn acceleration.", unit="rad/s^2", above=0.0, read_only=True)
 
 
 class BehaviorServer(ManagedNode):
@@ -73,17 +97,14 @@ class BehaviorServer(ManagedNode):
     def __init__(self, node_name: str = "behavior_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._settings = declare(self, BehaviorServerParameters)
-        self._footprint = Footprint.circle(self._settings.robot_radius)
         self._behaviors: list[Behavior[Any]] = []
-        self._costmap: Costmap | None = None
         self._velocity = np.zeros(3)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
 
     def configure(self) -> None:
         """Make the behaviours and serve."""
-        from geometry_msgs.msg import PolygonStamped, Twist, TwistStamped
-        from nav2_msgs.msg import Costmap as CostmapMessage
+        from geometry_msgs.msg import Twist, TwistStamped
         from nav_msgs.msg import Odometry
         from rosidl_runtime_py.utilities import get_action
 
@@ -91,20 +112,26 @@ class BehaviorServer(ManagedNode):
             TwistStamped if self._settings.enable_stamped_cmd_vel else Twist, "cmd_vel", 1
         )
         p = self._settings
-        self.create_subscription(CostmapMessage, p.local_costmap_topic, self._on_costmap, LATCHED)
-        self.create_subscription(PolygonStamped, p.local_footprint_topic, self._on_footprint, 1)
+        self._surroundings = CostmapListener(
+            self, self._buffer, p.robot_base_frame, p.local_costmap_topic, p.local_footprint_topic,
+            Footprint.circle(p.robot_radius), self._on_footprint,
+        )  # fmt: skip
         self.create_subscription(Odometry, "odom", self._on_odometry, 10)
         context = NavigationContext(
-            footprint=self._footprint,
+            footprint=self._surroundings.footprint,
             frequency=p.cycle_frequency,
             global_frame=p.local_frame,
             base_frame=p.robot_base_frame,
         )
         maker = ExtensionMaker(self, context)
+        defaults = {name: getattr(p, name) for name in _SHARED}
+        declare_without_effect(self, _WITHOUT_EFFECT)
         self._behaviors.clear()
         for name in p.behavior_plugins:
-            behavior: Behavior[Any] = maker.make(BEHAVIORS, name, _DEFAULT_PLUGINS.get(name, ""))
+            behavior: Behavior[Any] = maker.make(BEHAVIORS, name, _DEFAULT_PLUGINS.get(name, ""), defaults)
             self._behaviors.append(behavior)
+            for one in behavior.inputs:
+                self._listen(one)
             action = get_action(behavior.action)
             self.serve_action(action, name, self._executor_of(behavior, action))
 
@@ -114,40 +141,40 @@ class BehaviorServer(ManagedNode):
             self._publish_velocity(np.zeros(3))
         return super().on_deactivate(state)
 
-    def _on_costmap(self, message: Any) -> None:
-        self._costmap = costmap_of(message)
-
-    def _on_footprint(self, message: Any) -> None:
-        """Take the robot's outline, which is published where the robot stands."""
-        try:
-            found = self._buffer.lookup_transform(
-                self._settings.robot_base_frame, message.header.frame_id, Time.from_msg(message.header.stamp)
-            )
-        except TransformException:
-            return  # another one comes
-        corners = np.array([(point.x, point.y) for point in message.polygon.points]).reshape(-1, 2)
-        corners = transform_points(pose2_of_transform(found.transform), corners)
-        known = self._footprint.polygon
-        if corners.shape == known.shape and np.allclose(corners, known, atol=_FOOTPRINT_TOLERANCE):
-            return
-        try:
-            self._footprint = Footprint.of_corners(corners)
-        except NavigationError as error:
-            self.get_logger().warning(f"{self._settings.local_footprint_topic}: {error}")
-            return
+    def _on_footprint(self, footprint: Footprint) -> None:
         for behavior in self._behaviors:
-            behavior.set_footprint(self._footprint)
+            behavior.set_footprint(footprint)
+
+    def _listen(self, listened: Input) -> None:
+        from geometry_msgs.msg import Twist, TwistStamped
+        from std_msgs.msg import Empty
+
+        if listened.type is type(None):
+            self.create_subscription(Empty, listened.topic, lambda message: listened.take(), 1)
+        elif self._settings.enable_stamped_cmd_vel:
+            self.create_subscription(
+                TwistStamped,
+                listened.topic,
+                lambda message: listened.take(velocity_of(message.twist), seconds(message.header.stamp)),
+                1,
+            )
+        else:
+            self.create_subscription(
+                Twist, listened.topic, lambda message: listened.take(velocity_of(message), self._now()), 1
+            )
 
     def _on_odometry(self, message: Any) -> None:
-        twist = message.twist.twist
-        self._velocity = np.array([twist.linear.x, twist.linear.y, twist.angular.z])
+        self._velocity = velocity_of(message.twist.twist)
 
     def _executor_of(self, behavior: Behavior[Any], action: Any) -> Callable[[Any], Any]:
         async def execute(goal_handle: Any) -> Any:
             result = action.Result()
             begun = self.get_clock().now()
             await wait_until(
-                lambda: self._is_over(goal_handle) or self._is_known(), self, self._settings.cycle_frequency, _TIMEOUT_S
+                lambda: self._is_over(goal_handle) or not self._problem(behavior),
+                self,
+                self._settings.cycle_frequency,
+                _TIMEOUT_S,
             )
             if not self._is_over(goal_handle):
                 await self._behave(behavior, action, goal_handle)
@@ -164,11 +191,24 @@ class BehaviorServer(ManagedNode):
         """Return whether a goal is cancelled or aborted."""
         return goal_handle.is_cancel_requested or not goal_handle.is_active
 
-    def _is_known(self) -> bool:
-        """Return whether the robot's pose and what is around it are known: the first goal may come before they are."""
-        return self._costmap is not None and bool(
-            self._buffer.can_transform(self._settings.local_frame, self._settings.robot_base_frame, Time())
-        )
+    def _problem(self, behavior: Behavior[Any]) -> str:
+        """Return what is not known that a behaviour needs, in words; empty where it can go on.
+
+        The first goal may come before anything is known.
+        """
+        limit = self._settings.data_timeout
+        if not self._buffer.can_transform(self._settings.local_frame, self._settings.robot_base_frame, Time()):
+            return f"there is no transform from {self._settings.robot_base_frame} to {self._settings.local_frame}"
+        if not behavior.moves:
+            return ""
+        age = self._surroundings.age
+        if not age <= limit:
+            seen = (
+                "there is no costmap" if age == np.inf else f"the costmap is {age:.3g} s old, longer than {limit:g} s,"
+            )
+            return f"{seen} on '{self._settings.local_costmap_topic}'"
+        age = self._age_of_pose()
+        return "" if age <= limit else f"the robot's transform is {age:.3g} s old, longer than {limit:g} s"
 
     async def _behave(self, behavior: Behavior[Any], action: Any, goal_handle: Any) -> None:
         """Carry out a behaviour until it is done or its goal is over, and stop the robot."""
@@ -183,9 +223,10 @@ class BehaviorServer(ManagedNode):
 
     def _go_on(self, behavior: Behavior[Any], action: Any, goal_handle: Any) -> bool:
         """Make one cycle; False when the behaviour is done."""
-        if self._costmap is None:
-            raise TransformFailed("no local costmap has come yet")
-        step = behavior.step(self._pose(), self._velocity, self._costmap, self._now())
+        problem = self._problem(behavior)
+        if problem:
+            raise TransformFailed(problem)
+        step = behavior.step(self._pose(), self._velocity, self._surroundings.costmap or _NOTHING, self._now())
         self._publish_velocity(step.velocity)
         if behavior.feedback:
             goal_handle.publish_feedback(_feedback(action, behavior.feedback, step.feedback))
@@ -194,12 +235,19 @@ class BehaviorServer(ManagedNode):
     def _now(self) -> float:
         return self.get_clock().now().nanoseconds * 1e-9
 
-    def _pose(self) -> Any:
+    def _transform(self) -> Any:
         try:
-            found = self._buffer.lookup_transform(self._settings.local_frame, self._settings.robot_base_frame, Time())
+            return self._buffer.lookup_transform(self._settings.local_frame, self._settings.robot_base_frame, Time())
         except TransformException as error:
             raise TransformFailed(str(error)) from None
-        return pose2_of_transform(found.transform)
+
+    def _pose(self) -> Any:
+        return pose2_of_transform(self._transform().transform)
+
+    def _age_of_pose(self) -> float:
+        """Return the age [s] of the robot's transform; 0 for a static one, which has no time."""
+        stamp_ns = nanoseconds(self._transform().header.stamp)
+        return (self.get_clock().now().nanoseconds - stamp_ns) * 1e-9 if stamp_ns else 0.0
 
     def _publish_velocity(self, velocity: Any) -> None:
         frame = self._settings.robot_base_frame if self._settings.enable_stamped_cmd_vel else None

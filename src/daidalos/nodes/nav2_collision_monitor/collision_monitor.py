@@ -17,7 +17,7 @@ from daidalos.common.arrays import Array
 from daidalos.common.parameters import ParameterError, Parameters, parameter, per_name
 from daidalos.common.suggestions import hint
 from daidalos.navigation.collision_monitor import Zone, ZoneParameters
-from daidalos.nodes.conversions import twist_message
+from daidalos.nodes.conversions import twist_message, velocity_of
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_collision_monitor._sources import Source, SourceParameters
 from daidalos.nodes.parameters import declare, declare_without_effect
@@ -183,7 +183,7 @@ class CollisionMonitorNode(ManagedNode):
             return
         is_stamped = self._settings.enable_stamped_cmd_vel
         twist = message.twist if is_stamped else message
-        velocity = np.array([twist.linear.x, twist.linear.y, twist.angular.z])
+        velocity = velocity_of(twist)
         frame = message.header.frame_id if is_stamped else ""
         if not np.isfinite(velocity).all():
             self._warn(f"a velocity command is not finite: {velocity.tolist()}; the robot is stopped")

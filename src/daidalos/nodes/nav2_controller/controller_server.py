@@ -14,7 +14,7 @@ from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import CONTROLLERS, GOAL_CHECKERS, PROGRESS_CHECKERS
 from daidalos.nodes.action_results import TransformFailed
-from daidalos.nodes.conversions import path_array, path_message, twist_message
+from daidalos.nodes.conversions import path_array, path_message, twist_message, velocity_of
 from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode, CostmapOutdated
@@ -111,8 +111,7 @@ class ControllerServer(ManagedNode):
         return super().on_deactivate(state)
 
     def _on_odometry(self, message: Any) -> None:
-        twist = message.twist.twist
-        self._velocity = np.array([twist.linear.x, twist.linear.y, twist.angular.z])
+        self._velocity = velocity_of(message.twist.twist)
 
     async def _follow(self, goal_handle: Any) -> Any:
         from nav2_msgs.action import FollowPath as FollowPathAction

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from daidalos.navigation.costmap.occupancy import to_occupancy
 from daidalos.nodes.conversions import grid_message
-from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
+from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message, voxel_message
 from daidalos.nodes.qos import LATCHED
 
 if TYPE_CHECKING:
@@ -24,12 +24,14 @@ class CostmapInterface:
     def __init__(self, node: CostmapNode) -> None:
         from geometry_msgs.msg import PolygonStamped
         from nav2_msgs.msg import Costmap as CostmapMessage
+        from nav2_msgs.msg import VoxelGrid as VoxelMessage
         from nav_msgs.msg import OccupancyGrid as GridMessage
 
         self._node = node
         self._grid_publisher = node.create_publisher(GridMessage, "costmap", LATCHED)
         self._raw_publisher = node.create_publisher(CostmapMessage, "costmap_raw", LATCHED)
         self._footprint_publisher = node.create_publisher(PolygonStamped, "published_footprint", 1)
+        self._voxel_publisher = node.create_publisher(VoxelMessage, "voxel_grid", 1)
         self._create_services(node.get_name())
 
     def _create_services(self, name: str) -> None:
@@ -55,13 +57,22 @@ class CostmapInterface:
                 grid_message(values, costmap.resolution, costmap.origin, self._node.global_frame, stamp)
             )
         if self._raw_publisher.handle.has_subscribers:
-            self._raw_publisher.publish(costmap_message(self._node.snapshot(), self._node.global_frame, stamp))
+            self._raw_publisher.publish(
+                costmap_message(self._node.snapshot(), self._node.global_frame, stamp, self._node.updated)
+            )
         if self._footprint_publisher.handle.has_subscribers:
             pose = self._node.robot_pose()
             if pose is not None:
                 self._footprint_publisher.publish(
                     footprint_message(self._node.footprint, pose, self._node.global_frame, stamp)
                 )
+
+        if self._voxel_publisher.handle.has_subscribers and self._node.layered is not None:
+            with self._node.lock:
+                grids = [layer.voxels for layer in self._node.layered.layers if layer.enabled]
+            for grid in grids:
+                if grid is not None:
+                    self._voxel_publisher.publish(voxel_message(grid, self._node.global_frame, stamp))
 
     def _on_clear_entirely(self, request: Any, response: Any) -> Any:
         with self._node.lock:
@@ -85,6 +96,6 @@ class CostmapInterface:
 
     def _on_get_costmap(self, request: Any, response: Any) -> Any:
         response.map = costmap_message(
-            self._node.snapshot(), self._node.global_frame, self._node.get_clock().now().to_msg()
+            self._node.snapshot(), self._node.global_frame, self._node.get_clock().now().to_msg(), self._node.updated
         )
         return response

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,10 +22,12 @@ from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
+from daidalos.navigation.costmap.observation import CloudData
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import COSTMAP_LAYERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import (
+    cloud_data,
     grid_array,
     pose2_of,
     pose2_of_transform,
@@ -41,6 +44,8 @@ from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import nanoseconds, seconds
 
 _POLL_HZ = 20.0
+_NEVER = Time(nanoseconds=1)
+"""Time of a costmap that was never updated with all its inputs; zero would mean that the time is not given."""
 _FIRST_UPDATE_S = 15.0
 _DEFAULT_PLUGINS = {
     "static_layer": "nav2_costmap_2d::StaticLayer",
@@ -105,6 +110,8 @@ class CostmapNode(ManagedNode):
     layered : LayeredCostmap
         The costmap; hold `lock` while using it.
     lock : RLock
+    updated : builtin_interfaces/msg/Time
+        When the costmap was last updated with all its inputs known.
     pose_problem : str
         Why `robot_pose` was None the last time.
     """
@@ -122,6 +129,7 @@ class CostmapNode(ManagedNode):
         )  # fmt: skip
         self.lock = threading.RLock()
         self.layered: LayeredCostmap | None = None
+        self.updated = _NEVER.to_msg()
         self._settings = p = declare(self, CostmapNodeParameters, reconfigure=self._reconfigure)
         self.global_frame, self.base_frame = p.global_frame, p.robot_base_frame
         self.footprint = Footprint.from_parameters(p.footprint, p.robot_radius, p.footprint_padding)
@@ -164,7 +172,7 @@ class CostmapNode(ManagedNode):
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Clear the costs."""
         with self.lock:
-            self.layered, self._updates = None, 0
+            self.layered, self._updates, self.updated = None, 0, _NEVER.to_msg()
         return super().on_cleanup(state)
 
     # Layers.
@@ -184,7 +192,11 @@ class CostmapNode(ManagedNode):
         maker = ExtensionMaker(self, self.extension_context)
         layer = maker.make(COSTMAP_LAYERS, name, _DEFAULT_PLUGINS.get(name, ""))
         for one in layer.inputs:
-            {OccupancyGrid: self._listen_to_map, LaserScanData: self._listen_to_scans}[one.type](one)
+            {
+                OccupancyGrid: self._listen_to_map,
+                LaserScanData: self._listen_to_scans,
+                CloudData: self._listen_to_clouds,
+            }[one.type](one)
         return layer
 
     def _listen_to_map(self, listened: Input) -> None:
@@ -202,21 +214,44 @@ class CostmapNode(ManagedNode):
     def _listen_to_scans(self, listened: Input) -> None:
         from sensor_msgs.msg import LaserScan
 
-        async def take(scan: Any) -> None:
-            sensor_pose = self._sensor_poses.find(scan.header.frame_id)
-            if sensor_pose is None:
+        def convert(scan: Any) -> LaserScanData | None:
+            mount = self._sensor_poses.find(scan.header.frame_id)
+            return None if mount is None else scan_data(scan, mount)
+
+        self._listen_to_sensor(LaserScan, listened, convert)
+
+    def _listen_to_clouds(self, listened: Input) -> None:
+        from sensor_msgs.msg import PointCloud2
+
+        def convert(cloud: Any) -> CloudData | None:
+            try:
+                found = self.buffer.lookup_transform(self.base_frame, cloud.header.frame_id, Time())
+            except TransformException as error:
+                self.get_logger().info(f"waiting for a transform: {error}", throttle_duration_sec=5.0)
+                return None
+            return cloud_data(cloud, found.transform)
+
+        self._listen_to_sensor(PointCloud2, listened, convert)
+
+    def _listen_to_sensor(self, kind: Any, listened: Input, convert: Callable[[Any], Any]) -> None:
+        """Pass messages on with the pose of the base at their time; `convert` returns None for what cannot be used."""
+
+        async def take(message: Any) -> None:
+            sample = convert(message)
+            if sample is None:
                 return
-            stamp = scan.header.stamp
+            stamp = message.header.stamp
             found = await self.buffer.transform_at(self.global_frame, self.base_frame, stamp)
             if found is None:
                 return
             with self.lock:
-                listened.take(scan_data(scan, sensor_pose), pose2_of_transform(found.transform), seconds(stamp))
+                pose = pose2_of_transform(found.transform)
+                listened.take(sample.lifted(found.transform.translation.z), pose, seconds(stamp))
 
-        # A scan waits for its transform; updates and services do not wait with it.
+        # A message waits for its transform; updates and services do not wait with it.
         topic = f"/{listened.topic.removeprefix('/')}"
         group = MutuallyExclusiveCallbackGroup()
-        self.create_subscription(LaserScan, topic, take, qos_profile_sensor_data, callback_group=group)
+        self.create_subscription(kind, topic, take, qos_profile_sensor_data, callback_group=group)
 
     # Cycle.
 
@@ -296,7 +331,8 @@ class CostmapNode(ManagedNode):
         now = self.get_clock().now().nanoseconds * 1e-9
         with self.lock:
             layers = self.layered.layers if self.layered is not None else ()
-            return next((missing for layer in layers if (missing := layer.missing_input(now))), "")
+            used = (layer for layer in layers if layer.enabled)
+            return next((missing for layer in used if (missing := layer.missing_input(now))), "")
 
     def _missing_inputs(self) -> str:
         if self.robot_pose() is None:
@@ -315,8 +351,11 @@ class CostmapNode(ManagedNode):
         if pose is None or self.layered is None:
             return
         with self.lock:
-            self.layered.update(pose, self.get_clock().now().nanoseconds * 1e-9)
+            now = self.get_clock().now()
+            self.layered.update(pose, now.nanoseconds * 1e-9)
             self._updates += 1
+            if not self._missing_input():
+                self.updated = now.to_msg()
 
     def snapshot(self) -> Costmap:
         """Return a copy of the costmap."""

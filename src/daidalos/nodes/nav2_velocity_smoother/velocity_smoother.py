@@ -11,7 +11,7 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from daidalos.common.arrays import Array
 from daidalos.common.parameters import parameter
 from daidalos.navigation.velocity_smoother import MeasuredVelocity, VelocitySmoother, VelocitySmootherParameters
-from daidalos.nodes.conversions import twist_message
+from daidalos.nodes.conversions import twist_message, velocity_of
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.parameters import declare, declare_without_effect
 from daidalos.samples.fields import nanoseconds, seconds
@@ -110,7 +110,7 @@ class VelocitySmootherNode(ManagedNode):
         """Take a command that was given at a time [s]; one that is already too old changes nothing."""
         if not self.is_active:
             return
-        velocity = _velocity_of(twist)
+        velocity = velocity_of(twist)
         if not np.isfinite(velocity).all():
             self.get_logger().error(
                 f"a velocity command is not finite: {velocity.tolist()}; the robot is stopped",
@@ -127,7 +127,7 @@ class VelocitySmootherNode(ManagedNode):
         self._smoother.command(velocity, min(stamp, self._now))
 
     def _on_odometry(self, message: Any) -> None:
-        velocity = _velocity_of(message.twist.twist)
+        velocity = velocity_of(message.twist.twist)
         if not np.isfinite(velocity).all():
             self.get_logger().warning(
                 f"a velocity of the odometry is not finite and ignored: {velocity.tolist()}",
@@ -156,10 +156,6 @@ class VelocitySmootherNode(ManagedNode):
         is_own = self._settings.stamp_smoothed_velocity_with_smoothing_time or self._header is None
         frame = "" if self._header is None else self._header.frame_id
         self._publisher.publish(twist_message(velocity, frame, now if is_own else self._header.stamp))
-
-
-def _velocity_of(twist: Any) -> Array:
-    return np.array([twist.linear.x, twist.linear.y, twist.angular.z])
 
 
 def main() -> int:

@@ -13,12 +13,12 @@ from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import Bounds, Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.obstacle_layer import (
-    Observation,
     ObservationSource,
     ObstacleLayer,
     ObstacleLayerParameters,
     clear_rays,
 )
+from daidalos.navigation.costmap.observation import Observation
 from properties import examples
 
 ROBOT = Footprint.circle(0.1)

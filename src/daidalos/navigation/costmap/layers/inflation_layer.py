@@ -34,6 +34,7 @@ class InflationLayerParameters(Parameters):
     )
     inflate_unknown: bool = parameter(False, "Whether unknown cells get costs.")
     inflate_around_unknown: bool = parameter(False, "Whether unknown cells count as obstacles.")
+    enabled: bool = parameter(True, "Whether the layer is used.")
 
 
 class InflationLayer(Layer):

@@ -1,7 +1,7 @@
 """Obstacle layer: marks where rays of sensors end, and clears where they pass."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter, per_name
-from daidalos.common.pose2 import compose
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import (
@@ -24,6 +23,7 @@ from daidalos.navigation.costmap.costmap import (
     Window,
 )
 from daidalos.navigation.costmap.footprint import fill_polygon
+from daidalos.navigation.costmap.observation import CloudData, Observation
 
 
 @dataclass(frozen=True)
@@ -51,14 +51,21 @@ class ObservationSource(Parameters):
     marking: bool = parameter(True, "Whether obstacles are marked.")
     clearing: bool = parameter(True, "Whether cells before obstacles are cleared.")
     inf_is_valid: bool = parameter(True, "Whether rays that met nothing clear their way.")
+    min_obstacle_height: float = parameter(0.0, "Height from which points are obstacles.", unit="m")
+    max_obstacle_height: float = parameter(2.0, "Height up to which points are obstacles.", unit="m")
     topic: str = parameter("", "Topic of the sensor; empty for the source's name.", read_only=True)
-    data_type: str = parameter("LaserScan", "Type of its messages.", choices=("LaserScan",), read_only=True)
+    data_type: str = parameter(
+        "LaserScan", "Type of its messages.", choices=("LaserScan", "PointCloud2"), read_only=True
+    )
 
 
 @dataclass(frozen=True)
 class ObstacleLayerParameters(Parameters):
     """Parameters of the layer, by their Nav2 names."""
 
+    enabled: bool = parameter(True, "Whether the layer is used.")
+    max_obstacle_height: float = parameter(2.0, "Height up to which points of any sensor are obstacles.", unit="m")
+    min_obstacle_height: float = parameter(0.0, "Height from which points of any sensor are obstacles.", unit="m")
     observation_sources: str = parameter("scan", "Names of the sensors, with spaces between them.", read_only=True)
     sources: Mapping[str, ObservationSource] = per_name(ObservationSource, by="observation_sources", at="")
     footprint_clearing_enabled: bool = parameter(True, "Whether the cells below the robot are cleared.")
@@ -68,49 +75,6 @@ class ObstacleLayerParameters(Parameters):
         "and leaves unknown cells unknown.",
         choices=(0, 1, 2),
     )
-
-
-@dataclass(frozen=True)
-class Observation:
-    """Rays of one sensor measurement in the costmap's frame.
-
-    Attributes
-    ----------
-    origin : ndarray, shape (2,)
-        Where the rays start [m].
-    ends : ndarray, shape (n, 2)
-        Where they end [m].
-    hits : ndarray of bool, shape (n,)
-        Whether an obstacle ended them.
-    stamp : float
-        Time [s] of the reading.
-    """
-
-    origin: Array
-    ends: Array
-    hits: NDArray[np.bool_]
-    stamp: float
-
-    @classmethod
-    def from_scan(
-        cls, scan: LaserScanData, base_pose: Array, stamp: float, *, inf_is_valid: bool = True
-    ) -> "Observation":
-        """Return the rays of a laser scan with the robot's base at a pose (x, y, yaw) in the costmap's frame.
-
-        Ranges that are not a number, or outside of the sensor's limits, are left out; those that are infinite
-        are rays that end at the sensor's largest range without a hit.
-        """
-        ranges = np.asarray(scan.ranges, dtype=np.float64)
-        hits = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
-        hits &= ranges > 0.0
-        misses = np.isposinf(ranges) if inf_is_valid else np.zeros_like(hits)
-        used = hits | misses
-        sensor = compose(base_pose, np.asarray(scan.sensor_pose, dtype=np.float64))
-        farthest = scan.range_max if math.isfinite(scan.range_max) else 1e3
-        length = np.where(misses, farthest, ranges)[used]
-        angle = sensor[2] + scan.angle_min + scan.angle_increment * np.flatnonzero(used)
-        ends = sensor[:2] + length[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-        return cls(sensor[:2].copy(), ends, hits[used], stamp)
 
 
 class ObstacleLayer(Layer):
@@ -133,6 +97,7 @@ class ObstacleLayer(Layer):
         self._buffers: dict[str, list[Observation]] = {name: [] for name in self.parameters.sources}
         self._under_robot: Array | None = None
         self._latest: dict[str, float] = {}
+        self._is_warned_of_heights = False
 
     def add_observation(self, observation: Observation, source: str = "scan") -> None:
         """Add a measurement of one of the sources, to be used at the next update.
@@ -148,8 +113,12 @@ class ObstacleLayer(Layer):
     @property
     def inputs(self) -> tuple[Input, ...]:
         """Implement `Layer.inputs`."""
+        kinds: dict[str, tuple[type, Callable[..., None]]] = {
+            "LaserScan": (LaserScanData, self.add_scan),
+            "PointCloud2": (CloudData, self.add_cloud),
+        }
         return tuple(
-            Input(source.topic or name, LaserScanData, partial(self.add_scan, name))
+            Input(source.topic or name, kinds[source.data_type][0], partial(kinds[source.data_type][1], name))
             for name, source in self.parameters.sources.items()
         )
 
@@ -157,6 +126,10 @@ class ObstacleLayer(Layer):
         """Take a scan of one of the sources; see `Observation.from_scan`."""
         inf_is_valid = self.parameters.sources[source].inf_is_valid
         self.add_observation(Observation.from_scan(scan, base_pose, stamp, inf_is_valid=inf_is_valid), source)
+
+    def add_cloud(self, source: str, cloud: CloudData, base_pose: Array, stamp: float) -> None:
+        """Take a point cloud of one of the sources; see `Observation.from_cloud`."""
+        self.add_observation(Observation.from_cloud(cloud, base_pose, stamp), source)
 
     def missing_input(self, now: float) -> str:
         """Return which sensor has observed nothing for its `expected_update_rate`."""
@@ -192,10 +165,10 @@ class ObstacleLayer(Layer):
         ]
         for source, observation in readings:
             if source.clearing:
-                bounds = bounds.including(_clear(self._seen, observation, source))
+                bounds = bounds.including(self._clear(self._seen, observation, source))
         for source, observation in readings:
             if source.marking:
-                bounds = bounds.including(_mark(self._seen, observation, source))
+                bounds = bounds.including(self._mark(self._seen, observation, source))
         for name, buffer in self._buffers.items():
             oldest = now - self.parameters.sources[name].observation_persistence
             buffer[:] = [kept for kept in buffer if kept.stamp > oldest]
@@ -213,6 +186,47 @@ class ObstacleLayer(Layer):
             fill_polygon(costmap, self._under_robot, FREE_SPACE)
         _combine(costmap.costs[window.slices], self._seen.costs[window.slices], self.parameters.combination_method)
 
+    def _clear(self, seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
+        """Clear the cells that rays passed."""
+        if observation.ends.shape[0]:
+            clear_rays(
+                seen.costs,
+                seen.resolution,
+                seen.origin,
+                observation.origin,
+                observation.ends,
+                observation.hits,
+                source.raytrace_min_range,
+                source.raytrace_max_range,
+            )
+        return bounds_of_rays(observation, source.raytrace_max_range)
+
+    def _mark(self, seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
+        """Mark the cells in which rays ended on an obstacle within range."""
+        points = observation.ends[self._obstacles(observation, source)]
+        cells = np.floor((points - seen.origin) / seen.resolution).astype(np.int64)
+        inside = (cells >= 0).all(axis=1) & (cells < (seen.width, seen.height)).all(axis=1)
+        seen.costs[cells[inside, 1], cells[inside, 0]] = LETHAL_OBSTACLE
+        return Bounds().including_points(points)
+
+    def _obstacles(self, observation: Observation, source: ObservationSource) -> NDArray[np.bool_]:
+        """Return which rays ended on an obstacle within range and height; shape (n,)."""
+        away = observation.ends - observation.origin
+        distance = np.hypot(away[:, 0], away[:, 1])
+        heights = observation.end_heights
+        low = max(source.min_obstacle_height, self.parameters.min_obstacle_height)
+        high = min(source.max_obstacle_height, self.parameters.max_obstacle_height)
+        near = observation.hits & (distance <= source.obstacle_max_range) & (distance >= source.obstacle_min_range)
+        used = near & (heights >= low) & (heights <= high)
+        if near.any() and not used.any() and not self._is_warned_of_heights:
+            self._is_warned_of_heights = True
+            self.context.warn(
+                f"{self.context.name}: all points are at heights from {heights[near].min():.2f} m to "
+                f"{heights[near].max():.2f} m, and none is an obstacle: min_obstacle_height is {low:g} m, "
+                f"max_obstacle_height {high:g} m"
+            )
+        return np.asarray(used)
+
     def clear(self, keep: Window, *, inside: bool) -> None:
         """Clear the observations inside of a window of cells, or outside of it."""
         if self._seen is None:
@@ -227,21 +241,10 @@ class ObstacleLayer(Layer):
             self._seen.costs[keep.slices] = kept
 
 
-def _clear(seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
-    """Clear the cells that rays passed."""
+def bounds_of_rays(observation: Observation, reach: float) -> Bounds:
+    """Return the bounds of rays up to a distance [m] from their start."""
     if observation.ends.shape[0] == 0:
         return Bounds()
-    reach = source.raytrace_max_range
-    clear_rays(
-        seen.costs,
-        seen.resolution,
-        seen.origin,
-        observation.origin,
-        observation.ends,
-        observation.hits,
-        source.raytrace_min_range,
-        reach,
-    )
     x, y = (float(value) for value in observation.origin)
     touched = Bounds().including_points(observation.ends)
     return Bounds(
@@ -250,18 +253,6 @@ def _clear(seen: Costmap, observation: Observation, source: ObservationSource) -
         min(touched.max_x, x + reach),
         min(touched.max_y, y + reach),
     ).including(Bounds(x, y, x, y))
-
-
-def _mark(seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
-    """Mark the cells in which rays ended on an obstacle within range."""
-    away = observation.ends - observation.origin
-    distance = np.hypot(away[:, 0], away[:, 1])
-    near = (distance <= source.obstacle_max_range) & (distance >= source.obstacle_min_range)
-    points = observation.ends[near & observation.hits]
-    cells = np.floor((points - seen.origin) / seen.resolution).astype(np.int64)
-    inside = (cells >= 0).all(axis=1) & (cells < (seen.width, seen.height)).all(axis=1)
-    seen.costs[cells[inside, 1], cells[inside, 0]] = LETHAL_OBSTACLE
-    return Bounds().including_points(points)
 
 
 @compiled

@@ -27,6 +27,7 @@ class StaticLayerParameters(Parameters):
         True, "Whether cells are free, occupied or unknown, and nothing in between.", read_only=True
     )
     track_unknown_space: bool = parameter(True, "Whether unknown cells stay unknown instead of free.", read_only=True)
+    enabled: bool = parameter(True, "Whether the layer is used.")
 
 
 class StaticLayer(Layer):

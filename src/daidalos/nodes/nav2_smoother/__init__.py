@@ -1,0 +1,1 @@
+"""Server that smooths paths."""

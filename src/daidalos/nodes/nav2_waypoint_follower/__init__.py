@@ -1,0 +1,1 @@
+"""Server that drives through waypoints and carries out a task at each."""
