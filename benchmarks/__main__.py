@@ -20,7 +20,7 @@ from benchmarks.goals import Goal, goal_of
 
 FOLDER = Path(__file__).parent
 RESULTS = FOLDER / "results"
-NO_BENCHMARKS = {"__main__", "__init__", "goals", "floors", "messages", "processes"}
+NO_BENCHMARKS = {"__main__", "__init__", "goals", "floors", "messages", "processes", "runs"}
 ONE = "import json, sys; from benchmarks import {name} as b; print('\\n' + json.dumps(b.run()))"
 
 

@@ -1,5 +1,5 @@
-"""Speed of lock-step runs: simulated seconds in a second of processor time by scenario, what a message, a timer and a
-switch of threads cost, and the curve over the number of robots.
+"""Speed of lock-step runs: simulated seconds in a second of processor time by scenario, and what a message, a timer and
+a switch of threads cost.
 
 Each run is a process, which ends at a simulated time; its processor time is that of the child. What a run costs before
 its first step is measured by a short one and subtracted, so that figures do not depend on how long a run is.
@@ -7,15 +7,11 @@ its first step is measured by a short one and subtracted, so that figures do not
 
 from __future__ import annotations
 
-import os
-import resource
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-FLEET = tuple(int(count) for count in os.environ.get("DAIDALOS_BENCHMARK_ROBOTS", "1,2,10,50").split(","))
-"""Numbers of robots; fifty of them take a quarter of an hour of one core."""
+from benchmarks.runs import launch_until, measure
 
 SCENARIOS: dict[str, tuple[list[str], float, float]] = {
     "turtlesim": (["turtlesim", "multisim.launch.py"], 1.0, 1000.0),
@@ -89,12 +85,9 @@ def run() -> dict[str, float | str]:
             figures[f"lockstep.{name}_us"] = 1e6 * _cost_of_loop(folder, text, in_lockstep=True)
             figures[f"lockstep.{name}_in_real_time_us"] = 1e6 * _cost_of_loop(folder, text, in_lockstep=False)
         for name, (words, short_s, long_s) in SCENARIOS.items():
-            figures[f"lockstep.{name}_times_real_time"] = _speed(folder, words, short_s, long_s)
-        for count in FLEET:
-            words = ["daidalos_demo", "fleet.launch.py", f"robots:={count}"]
-            figures[f"lockstep.robots_{count:02}_times_real_time"] = _speed(folder, words, 8.0, 18.0)
-        figures["lockstep.peak_mb"] = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
-    _print_curve(figures)
+            short, long = (launch_until(folder, until, *words) for until in (short_s, long_s))
+            figures[f"lockstep.{name}_times_real_time"] = (long_s - short_s) / (long.seconds - short.seconds)
+            figures[f"lockstep.{name}_peak_mb"] = long.peak_mb
     return figures
 
 
@@ -105,28 +98,5 @@ def _cost_of_loop(folder: Path, text: str, *, in_lockstep: bool) -> float:
         path = folder / f"loop_{count}.py"
         path.write_text(text.format(count=count))
         start = [sys.executable, "-m", "daidalos.lockstep.start", "--"] if in_lockstep else []
-        times.append(_processor_time([*start, sys.executable, str(path)], folder))
+        times.append(measure([*start, sys.executable, str(path)], folder).seconds)
     return (times[1] - times[0]) / COUNT
-
-
-def _speed(folder: Path, words: list[str], short_s: float, long_s: float) -> float:
-    """Return the simulated seconds in a second of processor time between two times of a launch."""
-    launch = [sys.executable, "-m", "daidalos.cli.ros2", "launch", "--lockstep"]
-    times = [_processor_time([*launch, "--until", str(until), *words], folder) for until in (short_s, long_s)]
-    return (long_s - short_s) / (times[1] - times[0])
-
-
-def _processor_time(command: list[str], folder: Path) -> float:
-    environment = os.environ | {"RMW_IMPLEMENTATION": "rmw_daidalos_inprocess", "PYTHONHASHSEED": "0"}
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
-def _print_curve(figures: dict[str, float | str]) -> None:
-    """Print what a simulated second costs over the number of robots, as bars."""
-    costs = {count: 1.0 / float(figures[f"lockstep.robots_{count:02}_times_real_time"]) for count in FLEET}
-    most = max(costs.values(), default=1.0)
-    for count, cost in costs.items():
-        print(f"{count:3} robots {cost:8.2f} s a simulated second {'#' * round(40 * cost / most)}")
