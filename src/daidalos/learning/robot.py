@@ -112,6 +112,8 @@ class SimulatedRobot:
             chosen = np.linspace(0, len(angles), min(rays, len(angles)), endpoint=False).astype(int)
             self._fan = RayFan(angles[chosen], np.zeros(1))
             self._fan.bind(physics.model)
+            mount = self._lidar.pose
+            self._mount = np.array(mount.position), rotation_matrix(mount.orientation)
 
     def _is_wanted(self, topic: str) -> bool:
         return topic in self._wanted
@@ -190,14 +192,15 @@ class SimulatedRobot:
         lidar = self._lidar
         if lidar is None:
             return np.zeros(0)
-        self.simulation.physics.refresh_positions()
-        mount = lidar.link.pose @ lidar.pose
-        origin, rotation = np.array(mount.position), rotation_matrix(mount.orientation)
-        ranges, geoms = self._fan.cast(self.simulation.physics, origin, rotation, lidar.link.body, lidar.range_max)
+        physics, link = self.simulation.physics, lidar.link
+        turn = link.rotation
+        offset, tilt = self._mount
+        origin = physics.data.xpos[link.body] + turn @ offset
+        ranges, geoms = self._fan.cast(physics, origin, turn @ tilt, link.body, lidar.range_max)
         seen = (geoms >= 0) & (ranges <= lidar.range_max) & ~self._mine[geoms]
-        ranges[seen] = lidar.noise.apply(ranges[seen], lidar.random)
-        ranges[~seen] = lidar.range_max
-        return np.clip(ranges, 0.0, lidar.range_max)
+        measured = np.full(len(ranges), lidar.range_max)
+        measured[seen] = lidar.noise.apply(ranges[seen], lidar.random)
+        return np.minimum(np.maximum(measured, 0.0, out=measured), lidar.range_max, out=measured)
 
     def image(self) -> Any:
         """Return the picture of the camera; None without one."""

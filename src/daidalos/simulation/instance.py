@@ -202,11 +202,12 @@ class Instance:
 
     def set_pose(self, pose: Pose) -> None:
         """Move the free links of the model as a whole; joints keep their positions."""
-        change = pose @ self.pose.inverse
-        data, model = self.physics.data, self.physics.model
-        for link, joint in self.build.free.items():
+        data, model, free = self.physics.data, self.physics.model, self.build.free
+        root = next(iter(free), None)
+        change = pose @ self.pose.inverse if len(free) > 1 else pose
+        for link, joint in free.items():
             address = int(model.joint(joint).qposadr[0])
-            moved = change @ self.link(link).pose
+            moved = pose @ self.model.links[link].pose if link == root else change @ self.link(link).pose
             x, y, z, w = moved.orientation
             data.qpos[address : address + 7] = (*moved.position, w, x, y, z)
 
