@@ -198,9 +198,10 @@ class SimulatedRobot:
         origin = physics.data.xpos[link.body] + turn @ offset
         ranges, geoms = self._fan.cast(physics, origin, turn @ tilt, link.body, lidar.range_max)
         seen = (geoms >= 0) & (ranges <= lidar.range_max) & ~self._mine[geoms]
-        measured = np.full(len(ranges), lidar.range_max)
+        measured: Array = np.full(len(ranges), lidar.range_max)
         measured[seen] = lidar.noise.apply(ranges[seen], lidar.random)
-        return np.minimum(np.maximum(measured, 0.0, out=measured), lidar.range_max, out=measured)
+        np.clip(measured, 0.0, lidar.range_max, out=measured)
+        return measured
 
     def image(self) -> Any:
         """Return the picture of the camera; None without one."""
