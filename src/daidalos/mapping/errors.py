@@ -63,3 +63,7 @@ class RelationsError(LineError):
 
 class GraphFileError(LineError):
     """Error of a file of a pose graph or a trajectory."""
+
+
+class LogFileError(LineError):
+    """Error of a log in a text format."""

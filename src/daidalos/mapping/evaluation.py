@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daidalos.common import pose2
 from daidalos.common.arrays import Array
 from daidalos.mapping.errors import RelationsError
 from daidalos.mapping.grid import OCCUPIED, OccupancyGrid
-
-Stamps = NDArray[np.int64]
+from daidalos.mapping.text_file import nanoseconds, read_lines
+from daidalos.mapping.trajectory import Stamps
 
 MAX_CLOCK_OFFSET, CLOCK_OFFSET_STEP = 0.3, 0.01
 """Largest difference [s] of two clocks that is looked for, and the step of the search."""
@@ -97,19 +96,11 @@ def read_relations(path: str | Path) -> Relations:
         Naming the file and the line.
     """
     file = Path(path)
-    try:
-        lines = file.read_text(encoding="ascii").splitlines()
-    except OSError as error:
-        raise RelationsError(file, None, error.strerror or str(error)) from error
-    except UnicodeDecodeError as error:
-        raise RelationsError(file, None, "not a text file of relations") from error
     stamps, poses = [], []
-    for number, line in enumerate(lines, 1):
+    for number, line in read_lines(file, RelationsError):
         words = line.split()
-        if not words or words[0].startswith("#"):
-            continue
         try:
-            first, second = (_nanoseconds(word) for word in words[:2])
+            first, second = (nanoseconds(word) for word in words[:2])
             x, y, _, _, _, yaw = (float(word) for word in words[2:])
         except ValueError:
             raise RelationsError(file, number, "expected eight numbers: t1 t2 x y z roll pitch yaw") from None
@@ -184,15 +175,15 @@ def poses_at(stamps_ns: Stamps, poses: Array, times_ns: Stamps) -> Array:
     return pose2.interpolate(poses[before], poses[before + 1], share)
 
 
-def absolute_trajectory_error(estimated: Array, true: Array) -> float:
-    """Compute the root mean squared distance [m] of two trajectories (n, 3) after rigid alignment (Umeyama 1991)."""
+def aligned(estimated: Array, true: Array) -> Array:
+    """Move a trajectory (n, 3) rigidly so that its positions lie nearest to those of another (Umeyama 1991)."""
     a, b = estimated[:, :2], true[:, :2]
     centred_a, centred_b = a - a.mean(axis=0), b - b.mean(axis=0)
     along = np.sum(centred_a * centred_b)
     across = np.sum(centred_a[:, 0] * centred_b[:, 1] - centred_a[:, 1] * centred_b[:, 0])
     angle = np.arctan2(across, along)
-    rest = pose2.transform_points((0.0, 0.0, angle), centred_a) - centred_b
-    return float(np.sqrt(np.mean(np.sum(rest**2, axis=1))))
+    turned = pose2.transform_points((0.0, 0.0, angle), a.mean(axis=0)[None, :])[0]
+    return pose2.compose(np.array([*(b.mean(axis=0) - turned), angle]), estimated)
 
 
 def compare_with_truth(
@@ -232,9 +223,3 @@ def _occupied_middles(grid: OccupancyGrid) -> Array:
     rows, columns = np.nonzero(grid.data == OCCUPIED)
     middles = (np.stack([columns, rows], axis=1).astype(np.float64) + 0.5) * grid.resolution
     return pose2.transform_points(grid.origin, middles)
-
-
-def _nanoseconds(seconds: str) -> int:
-    """Convert decimal seconds to nanoseconds; a float cannot hold the time since 1970 that finely."""
-    whole, _, fraction = seconds.partition(".")
-    return int(whole) * 10**9 + int(f"{fraction:0<9.9}")

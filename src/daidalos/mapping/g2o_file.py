@@ -9,6 +9,7 @@ from daidalos.common import pose2
 from daidalos.common.arrays import Array
 from daidalos.mapping.errors import GraphFileError
 from daidalos.mapping.pose_graph import Edge
+from daidalos.mapping.text_file import read_lines, write_lines
 
 _UPPER = np.triu_indices(3)
 _NUMBERS = {"VERTEX_SE2": 4, "EDGE_SE2": 11}
@@ -36,17 +37,12 @@ def read_g2o(path: str | Path) -> tuple[Array, list[Edge]]:
         Naming the file and the line.
     """
     file = Path(path)
-    try:
-        lines = file.read_text(encoding="ascii").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not a text file"
-        raise GraphFileError(file, None, reason or "cannot be read") from error
     poses: dict[int, Array] = {}
     edges: list[tuple[int, int, int, Array]] = []
-    for number, line in enumerate(lines, 1):
-        kind, *words = line.split() or [""]
+    for number, line in read_lines(file, GraphFileError):
+        kind, *words = line.split()
         if kind not in _NUMBERS:
-            if kind and not kind.startswith("#") and kind != "FIX":
+            if kind != "FIX":
                 raise GraphFileError(file, number, f"expected VERTEX_SE2, EDGE_SE2 or FIX, found '{kind[:40]}'")
             continue
         values = _values(file, number, kind, words)
@@ -95,10 +91,7 @@ def write_g2o(path: str | Path, poses: Array, edges: list[Edge]) -> None:
         f"EDGE_SE2 {edge.first} {edge.second} {_text(edge.measurement)} {_text(edge.information[_UPPER])}\n"
         for edge in edges
     ]
-    try:
-        Path(path).write_text("".join(lines), encoding="ascii")
-    except OSError as error:
-        raise GraphFileError(Path(path), None, error.strerror or str(error)) from error
+    write_lines(Path(path), lines, GraphFileError)
 
 
 def _values(file: Path, number: int, kind: str, words: list[str]) -> Array:

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daidalos.bags.errors import BagError
 from daidalos.bags.reader import BagReader
@@ -18,8 +17,7 @@ from daidalos.interfaces.codec import CdrError, Codec, codec_of
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
 from daidalos.mapping.scan import LaserScanData
-
-Stamps = NDArray[np.int64]
+from daidalos.mapping.trajectory import CARMEN_SUFFIXES, Stamps
 
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -91,7 +89,7 @@ class Log:
 
 
 def read_log(path: str | Path, *, scan_topic: str | None = None, odom_topic: str | None = None) -> Log:
-    """Read the scans and the odometry of a bag (MCAP or sqlite3, a folder or a single file).
+    """Read the scans and the odometry of a bag (MCAP or sqlite3, a folder or a single file) or a log of CARMEN.
 
     Odometry comes from `nav_msgs/Odometry` messages or, where there are none, from odom -> base in /tf.
 
@@ -104,12 +102,14 @@ def read_log(path: str | Path, *, scan_topic: str | None = None, odom_topic: str
 
     Raises
     ------
-    LogError
+    MappingError
         When the bag cannot be read or lacks scans or odometry.
     """
     bag = Path(path)
     if not bag.exists():
         raise LogError(bag, "no such file or folder")
+    if bag.suffix.lower() in CARMEN_SUFFIXES and bag.is_file():
+        return _read_carmen(bag)
     try:
         with BagReader(bag) as reader:
             if reader.notes and not reader.metadata.message_count:
@@ -147,10 +147,37 @@ def _collect(bag: Path, reader: BagReader, scan_topic: str | None, odom_topic: s
     source, stamps, poses, base = _odometry(bag, odometry, transforms, odom_topic)
     mounts = _mounts(transforms, base)
     times = np.array([_stamp(message.header) for message in scans], dtype=np.int64)
+    found = [_scan(bag, message, mounts) for message in scans]
+    return _log(bag, (times, found, scan_topic), (stamps, poses, source))
+
+
+def _read_carmen(path: Path) -> Log:
+    """Read a log of CARMEN."""
+    from daidalos.mapping.carmen_log import read_carmen
+
+    found = read_carmen(path)
+    times, stamps = np.array(found.scan_stamps_ns), np.array(found.odometry_stamps_ns)
+    order, rows = np.argsort(times, kind="stable"), np.argsort(stamps, kind="stable")
+    scans = [found.scans[k] for k in order]
+    return _log(path, (times[order], scans, "its laser"), (stamps[rows], np.array(found.odometry)[rows], "the log"))
+
+
+def _log(path: Path, seen: tuple[Stamps, list[LaserScanData], str], measured: tuple[Stamps, Array, str]) -> Log:
+    """Return scans with the odometry at their times, without those that have none.
+
+    Parameters
+    ----------
+    path : Path
+    seen
+        Times of the scans, the scans and where they come from.
+    measured
+        Times of odometry, the poses and where they come from.
+    """
+    (times, scans, scan_topic), (stamps, poses, source) = seen, measured
     covered = (times >= stamps[0] - LATEST_ODOMETRY) & (times <= stamps[-1] + LATEST_ODOMETRY)
     if not covered.any():
-        raise LogError(bag, f"no scan on {scan_topic} has odometry at its time: {source} covers another period")
-    kept = [_scan(bag, message, mounts) for message, use in zip(scans, covered, strict=True) if use]
+        raise LogError(path, f"no scan on {scan_topic} has odometry at its time: {source} covers another period")
+    kept = [scan for scan, use in zip(scans, covered, strict=True) if use]
     at_scans = poses_at(stamps, poses, times[covered])
     distinct, first = np.unique(stamps, return_index=True)
     return Log(times[covered], kept, at_scans, scan_topic, source, distinct, poses[first])

@@ -8,8 +8,10 @@ import numpy as np
 from daidalos.common import pose2
 from daidalos.common.arrays import Array
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.mapping.log import Log, Stamps
+from daidalos.mapping.log import Log
+from daidalos.mapping.pose_graph import Edge
 from daidalos.mapping.slam import Slam, SlamConfig
+from daidalos.mapping.trajectory import Stamps
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,10 @@ class LogMap:
         Pose (x, y, yaw) of the base in the map at each scan of the log.
     key_scans, closures : int
         Number of scans that make up the map, and of recognized places.
+    key_poses : ndarray, shape (m, 3)
+        Poses of the key scans.
+    edges : list of Edge
+        The pose graph between them.
     trajectory_ns : ndarray of int64, shape (k,)
         Times [ns] of the scans and the odometry between them.
     trajectory : ndarray, shape (k, 3)
@@ -34,6 +40,8 @@ class LogMap:
     poses: Array
     key_scans: int
     closures: int
+    key_poses: Array
+    edges: list[Edge]
     trajectory_ns: Stamps
     trajectory: Array
 
@@ -66,4 +74,5 @@ def map_log(log: Log, config: SlamConfig | None = None, progress: Callable[[int]
         mapped = keys >= 0
         poses[mapped] = pose2.compose(slam.key_poses[keys[mapped]], on_key[mapped])
     closures = sum(edge.closure for edge in slam.edges)
-    return LogMap(slam.grid(), poses, slam.key_count, closures, *log.trajectory(poses))
+    graph = slam.key_poses, list(slam.edges)
+    return LogMap(slam.grid(), poses, slam.key_count, closures, *graph, *log.trajectory(poses))

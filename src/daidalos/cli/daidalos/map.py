@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from daidalos.mapping.offline import LogMap
 
 EPILOG = """The bag is an MCAP or sqlite3 bag with scans (sensor_msgs/LaserScan) and odometry
-(nav_msgs/Odometry, or the transform odom -> base in /tf). NAME.pgm and NAME.yaml are written as map_server
-reads them."""
+(nav_msgs/Odometry, or the transform odom -> base in /tf), or a log of CARMEN (.log, .clf). NAME.pgm and
+NAME.yaml are written as map_server reads them. Trajectories are files in the format of TUM or KITTI
+(.kitti), logs of CARMEN, pose graphs (.g2o) and, to compare with, bags, whose odometry is taken."""
 
 
 class MapVerb:
@@ -28,7 +29,7 @@ class MapVerb:
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
         """Declare the arguments of `daidalos map`."""
         parser.epilog = EPILOG
-        parser.add_argument("bag", type=Path, help="bag: a folder, an .mcap or a .db3 file")
+        parser.add_argument("bag", type=Path, nargs="?", help="bag: a folder, an .mcap or .db3 file; or a .log or .clf")
         parser.add_argument(
             "-o",
             "--output",
@@ -63,11 +64,37 @@ class MapVerb:
         parser.add_argument(
             "--relations", type=Path, metavar="FILE", help="ground-truth relations to print the error against"
         )
-        parser.add_argument("--trajectory", type=Path, metavar="FILE", help="write the trajectory in TUM format")
+        parser.add_argument(
+            "--trajectory",
+            type=Path,
+            metavar="FILE",
+            help="write the trajectory: .kitti, .log and .clf (with scans), .g2o (the pose graph), else TUM's format",
+        )
+        parser.add_argument(
+            "--compare",
+            type=Path,
+            nargs=2,
+            metavar=("A", "B"),
+            help="print the errors of trajectory A against B, which may be .relations, or of map A.yaml against B.yaml",
+        )
+        parser.add_argument(
+            "--delta",
+            type=_positive,
+            default=1.0,
+            metavar="M",
+            help="distance of relative errors in metres (default: 1)",
+        )
         parser.add_argument("--json", action="store_true", help="print one JSON object")
 
     def main(self, *, args: argparse.Namespace) -> int:
-        """Map a log; return the exit status."""
+        """Map a log, or compare; return the exit status."""
+        if (args.bag is None) == (args.compare is None):
+            raise UserError("expected a bag to be mapped, or --compare A B")
+        if args.compare is not None:
+            first, second = args.compare
+            report = _compare(first, second, args.delta)
+            print(json.dumps(report) if args.json else _comparison_text(report))
+            return 0
         report = _run(args)
         print(json.dumps(report) if args.json else _as_text(report))
         return 0
@@ -91,7 +118,7 @@ def _run(args: argparse.Namespace) -> dict[str, Any]:
         raise UserError(f"{args.bag}: no scan on {log.scan_topic} has enough valid ranges to map")
     written = list(save_map(mapped.grid, output, args.mode))
     if args.trajectory:
-        _write_trajectory(args.trajectory, mapped)
+        _write_trajectory(args.trajectory, log, mapped)
         written.append(args.trajectory)
     report = _report(log, mapped, seconds, written)
     if relations is not None:
@@ -159,18 +186,60 @@ def _errors(path: Path, stamps_ns: Any, poses: Any, relations: "Relations") -> "
         raise UserError(f"{path}: {error}") from error
 
 
-def _write_trajectory(path: Path, mapped: "LogMap") -> None:
-    """Write a trajectory in TUM format: time x y z qx qy qz qw."""
-    import numpy as np
+def _write_trajectory(path: Path, log: "Log", mapped: "LogMap") -> None:
+    """Write a trajectory in the format of its suffix."""
+    from daidalos.mapping.carmen_log import write_carmen
+    from daidalos.mapping.g2o_file import write_g2o
+    from daidalos.mapping.trajectory import CARMEN_SUFFIXES, Trajectory, write_trajectory
 
-    lines = [
-        f"{stamp // 10**9}.{stamp % 10**9:09d} {x:.6f} {y:.6f} 0 0 0 {np.sin(yaw / 2):.9f} {np.cos(yaw / 2):.9f}\n"
-        for stamp, (x, y, yaw) in zip(mapped.trajectory_ns.tolist(), mapped.trajectory, strict=True)
-    ]
+    suffix = path.suffix.lower()
+    if suffix in CARMEN_SUFFIXES:
+        write_carmen(path, log.stamps_ns, log.scans, mapped.poses, log.odometry)
+    elif suffix == ".g2o":
+        write_g2o(path, mapped.key_poses, mapped.edges)
+    else:
+        write_trajectory(path, Trajectory(mapped.trajectory_ns, mapped.trajectory))
+
+
+def _compare(first: Path, second: Path, delta: float) -> dict[str, Any]:
+    """Return the errors of one trajectory or map against another."""
+    from daidalos.mapping.comparison import compare_trajectories, compare_with_relations
+    from daidalos.mapping.evaluation import compare_with_truth, read_relations
+    from daidalos.mapping.trajectory import read_trajectory
+
+    if {first.suffix, second.suffix} & {".yaml", ".yml"}:
+        from daidalos.mapping.map_file import load_map
+
+        agreement = compare_with_truth(load_map(first), load_map(second))
+        return {"walls_found": agreement.walls_found, "walls_true": agreement.walls_true}
+    estimated = read_trajectory(first)
     try:
-        path.write_text("".join(lines), encoding="ascii")
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from error
+        if second.suffix == ".relations":
+            errors, offset = compare_with_relations(estimated, read_relations(second))
+            return {"relations": errors.summary(), "clock_offset_s": offset}
+        return compare_trajectories(estimated, read_trajectory(second), delta).summary()
+    except ValueError as error:
+        raise UserError(f"{first}, {second}: {error}") from error
+
+
+def _comparison_text(report: dict[str, Any]) -> str:
+    if "walls_found" in report:
+        return (
+            f"{100 * report['walls_found']:.1f} % of the second map's walls are in the first, "
+            f"{100 * report['walls_true']:.1f} % of the first map's walls are in the second (within two cells)"
+        )
+    clocks = f"clocks: the second is {report['clock_offset_s']:+.2f} s ahead, which is taken out"
+    if "relations" in report:
+        return f"relations: {_errors_text(report['relations'])}\n{clocks}"
+    return "\n".join(
+        (
+            f"ATE over {report['poses']} poses, aligned: rmse {report['ate_rmse_m']:.4f} m, "
+            f"mean {report['ate_mean_m']:.4f}, median {report['ate_median_m']:.4f}, max {report['ate_max_m']:.4f}; "
+            f"heading mean {report['heading_mean_deg']:.3f} deg, max {report['heading_max_deg']:.3f}",
+            f"RPE over {report['rpe_delta_m']:g} m: {_errors_text(report['rpe'])}",
+            clocks,
+        )
+    )
 
 
 def _report(log: "Log", mapped: "LogMap", seconds: float, written: list[Path]) -> dict[str, Any]:
@@ -202,14 +271,16 @@ def _as_text(report: dict[str, Any]) -> str:
     kinds = (("odometry", "odometry_error"), ("slam", "slam_error"), (after, "slam_error_with_clock_offset"))
     for name, key in kinds:
         if key in report:
-            error = report[key]
-            lines.append(
-                f"error of {name + ':':<9} translation {error['translation_mean_m']:.4f} +- "
-                f"{error['translation_std_m']:.4f} m (median {error['translation_median_m']:.4f}), "
-                f"rotation {error['rotation_mean_deg']:.3f} +- {error['rotation_std_deg']:.3f} deg "
-                f"over {error['relations']} relations"
-            )
+            lines.append(f"error of {name + ':':<9} {_errors_text(report[key])}")
     return "\n".join(lines)
+
+
+def _errors_text(error: dict[str, float]) -> str:
+    return (
+        f"translation {error['translation_mean_m']:.4f} +- {error['translation_std_m']:.4f} m "
+        f"(median {error['translation_median_m']:.4f}), rotation {error['rotation_mean_deg']:.3f} +- "
+        f"{error['rotation_std_deg']:.3f} deg over {error['relations']} relations"
+    )
 
 
 def _require_writable(path: Path) -> None:
