@@ -124,3 +124,27 @@ def test_a_resolution_that_is_none_is_refused(bag: Path, capsys: pytest.CaptureF
         call(bag, "--resolution", "-1")
     assert stopped.value.code == 2
     assert "--resolution" in capsys.readouterr().err
+
+
+def test_trajectories_are_compared(
+    bag: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("tour.tum", "tour.g2o"):
+        assert call(bag, "-o", "tour", "--trajectory", name, "--resolution", 0.2) == 0
+    assert (tmp_path / "tour.g2o").read_text().startswith("VERTEX_SE2 0 ")
+    capsys.readouterr()
+    assert call("--compare", bag, "tour.tum", "--json") == 0
+    report = json.loads(capsys.readouterr().out)
+    assert 0.01 < report["ate_rmse_m"] < 2.0, "of the odometry"
+    assert call("--compare", "tour.tum", "tour.tum") == 0
+    out = capsys.readouterr().out
+    assert "rmse 0.0000 m" in out
+    assert "RPE over 1 m: translation 0.0000" in out
+    assert "clocks: the second is +0.00 s ahead" in out
+    assert call("--compare", "tour.yaml", "tour.yaml") == 0
+    assert "100.0 % of the second map's walls are in the first" in capsys.readouterr().out
+    assert call("--compare", "tour.g2o", "tour.tum") == 2
+    assert "without times both must have the same number of poses" in capsys.readouterr().err
+    assert call() == 2
+    assert "expected a bag to be mapped, or --compare A B" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Comparison of trajectories; the figures of the case below are those of evo 1.31 for the same files."""
+"""Comparison of trajectories: errors, and the offset of the clocks."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from pathlib import Path
 
 import numpy as np
@@ -72,6 +73,17 @@ def test_a_raw_log_of_carmen_is_read(tmp_path: Path) -> None:
     assert scan.sensor_pose == (0.25, 0.0, 0.0)
     trajectory = read_trajectory(tmp_path / "raw.log")
     assert trajectory.poses[0] == pytest.approx([1.0, 0.0, 0.0]), "of the robot, not of its laser"
+
+
+def test_a_clock_that_lost_its_digits_is_replaced(tmp_path: Path) -> None:
+    lines = [
+        f"ODOM {k} 0 0 0 0 0 1.1e+09 h 1.1e+09\nFLASER 1 1.0 {k} 0 0 {k} 0 0 1.1e+09 h 1.1e+09\n" for k in range(5)
+    ]
+    with gzip.open(tmp_path / "cut.log.gz", "wt") as file:
+        file.write("".join(lines))
+    log = read_log(tmp_path / "cut.log.gz")
+    assert np.diff(log.stamps_ns).tolist() == [200_000_000] * 4
+    assert log.odometry[:, 0] == pytest.approx(np.arange(5.0))
 
 
 def test_the_newer_lines_of_carmen_are_read(tmp_path: Path) -> None:

@@ -17,6 +17,12 @@ MAX_RANGE = 80.0
 """Range [m] from which readings mean that nothing was seen; lasers of that time report 81.83 and 81.91."""
 
 _OFFSET = "robot_frontlaser_offset"
+_LEAST_GROWTH = 0.9
+"""Share of the scans that come later than the one before in a log whose times can be used."""
+
+_LINE_NS = 100_000_000
+"""Time [ns] that a line takes in other logs."""
+
 _HALF_TURN_BEAMS = 180
 """Beams over half a turn at one beam a degree; 181 beams have both ends."""
 
@@ -36,6 +42,8 @@ class CarmenLog:
         Poses of the robot.
     offset : float
         How far ahead of the robot's middle the laser is [m].
+    scan_lines, odometry_lines : list of int
+        Numbers of their lines.
     """
 
     scan_stamps_ns: list[int] = field(default_factory=list)
@@ -44,6 +52,8 @@ class CarmenLog:
     odometry_stamps_ns: list[int] = field(default_factory=list)
     odometry: list[Array] = field(default_factory=list)
     offset: float = 0.0
+    scan_lines: list[int] = field(default_factory=list)
+    odometry_lines: list[int] = field(default_factory=list)
 
     @property
     def trajectory(self) -> Trajectory:
@@ -56,7 +66,8 @@ class CarmenLog:
 def read_carmen(path: Path) -> CarmenLog:
     """Read a log: its lines ``ODOM``, ``FLASER``, ``ROBOTLASER1`` and the laser's offset among the ``PARAM``.
 
-    Lines of other kinds, such as those of a second laser, are passed over.
+    Lines of other kinds, such as those of a second laser, are passed over. Where the times cannot be used, as in files
+    that GMapping wrote with six digits, each line counts as 0.1 s.
 
     Raises
     ------
@@ -78,9 +89,21 @@ def read_carmen(path: Path) -> CarmenLog:
                 read(log, words)
             except (ValueError, IndexError):
                 raise LogFileError(path, number, f"expected after {kind}: {expected}") from None
+        # What a line adds comes at the time of its number, where the clock cannot be used.
+        log.scan_lines += [number] * (len(log.scans) - len(log.scan_lines))
+        log.odometry_lines += [number] * (len(log.odometry) - len(log.odometry_lines))
     if not log.scans:
         raise LogFileError(path, None, "no FLASER or ROBOTLASER1 in the file")
+    if not _is_clock(log.scan_stamps_ns):
+        log.scan_stamps_ns = [line * _LINE_NS for line in log.scan_lines]
+        log.odometry_stamps_ns = [line * _LINE_NS for line in log.odometry_lines]
     return log
+
+
+def _is_clock(stamps_ns: list[int]) -> bool:
+    """Return whether times grow from scan to scan, but for few of them; other programs cut the digits off."""
+    grows = np.diff(np.array(stamps_ns)) > 0
+    return not grows.size or float(np.mean(grows)) > _LEAST_GROWTH
 
 
 def write_carmen(path: Path, stamps_ns: Stamps, scans: Sequence[LaserScanData], poses: Array, odometry: Array) -> None:

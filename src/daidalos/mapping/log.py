@@ -17,7 +17,7 @@ from daidalos.interfaces.codec import CdrError, Codec, codec_of
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
 from daidalos.mapping.scan import LaserScanData
-from daidalos.mapping.trajectory import CARMEN_SUFFIXES, Stamps
+from daidalos.mapping.trajectory import CARMEN_SUFFIXES, Stamps, format_suffix
 
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -108,7 +108,7 @@ def read_log(path: str | Path, *, scan_topic: str | None = None, odom_topic: str
     bag = Path(path)
     if not bag.exists():
         raise LogError(bag, "no such file or folder")
-    if bag.suffix.lower() in CARMEN_SUFFIXES and bag.is_file():
+    if format_suffix(bag) in CARMEN_SUFFIXES and bag.is_file():
         return _read_carmen(bag)
     try:
         with BagReader(bag) as reader:

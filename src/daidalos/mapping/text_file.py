@@ -1,5 +1,7 @@
 """Lines of the text files in which trajectories, logs and pose graphs are exchanged."""
 
+import gzip
+import zlib
 from collections.abc import Iterable
 from decimal import Decimal
 from pathlib import Path
@@ -8,7 +10,7 @@ from daidalos.mapping.errors import LineError
 
 
 def read_lines(path: Path, error: type[LineError]) -> list[tuple[int, str]]:
-    """Return the lines of a file that are neither empty nor comments, with their numbers from 1.
+    """Return the lines of a file, which may be a ``.gz``, that are neither empty nor comments, numbered from 1.
 
     Raises
     ------
@@ -16,9 +18,10 @@ def read_lines(path: Path, error: type[LineError]) -> list[tuple[int, str]]:
         Of the kind `error`, when the file cannot be read or is no text.
     """
     try:
-        lines = path.read_text(encoding="ascii").splitlines()
-    except OSError as problem:
-        raise error(path, None, problem.strerror or str(problem)) from problem
+        content = gzip.decompress(path.read_bytes()) if path.suffix.lower() == ".gz" else path.read_bytes()
+        lines = content.decode("ascii").splitlines()
+    except (OSError, EOFError, zlib.error) as problem:
+        raise error(path, None, getattr(problem, "strerror", None) or str(problem)) from problem
     except UnicodeDecodeError as problem:
         raise error(path, None, "not a text file") from problem
     return [

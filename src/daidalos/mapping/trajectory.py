@@ -54,7 +54,7 @@ def read_trajectory(path: str | Path) -> Trajectory:
     from daidalos.mapping.text_file import read_lines
 
     file = Path(path)
-    suffix = file.suffix.lower()
+    suffix = format_suffix(file)
     if file.is_dir() or suffix in BAG_SUFFIXES:
         from daidalos.mapping.log import read_log
 
@@ -87,6 +87,11 @@ def write_trajectory(path: str | Path, trajectory: Trajectory) -> None:
 
     file = Path(path)
     (kitti_file.write_kitti if file.suffix.lower() == ".kitti" else tum_file.write_tum)(file, trajectory)
+
+
+def format_suffix(path: Path) -> str:
+    """Return the suffix that names a file's format, without the ``.gz`` of a compressed one."""
+    return Path(path.stem if path.suffix.lower() == ".gz" else path.name).suffix.lower()
 
 
 def travelled(poses: Array) -> Array:
