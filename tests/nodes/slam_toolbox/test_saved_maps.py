@@ -157,12 +157,12 @@ def test_mapping_and_localization_change_over(start: Start, saved: Path) -> None
         localization_on_configure=True,
     )
     stand(bench, lambda: bool(bench.map_to_odom))
-    count = bench.node._slam.key_count
+    count = bench.node.slam.key_count
     assert bench.stage.call(SetBool, "/slam_toolbox/set_localization_mode", data=False).success
     for k in range(10):
         moved = np.array([0.1 * k, 0.0, 0.0])
         bench.look(pose2.compose(PLACE, moved), moved)
-    bench.stage.step_until(lambda: bench.node._slam.key_count > count)
+    bench.stage.step_until(lambda: bench.node.slam.key_count > count)
     assert offset(bench) < 0.05
 
 
@@ -170,7 +170,7 @@ def test_key_scans_are_moved_by_hand(start: Start, saved: Path) -> None:
     bench = start(SynchronousSlamToolbox, map_file_name=str(saved), map_start_pose=PLACE.tolist())
     graphs = bench.stage.collect(MarkerArray, "slam_toolbox/graph_visualization", 10)
     stand(bench, lambda: bool(bench.map_to_odom and graphs))
-    slam = bench.node._slam
+    slam = bench.node.slam
     spheres = [marker for marker in graphs[-1].markers if marker.ns == "slam_toolbox"]
     assert len(spheres) == slam.key_count
     bench.stage.call(ToggleInteractive, "/slam_toolbox/toggle_interactive_mode")
@@ -185,12 +185,12 @@ def test_key_scans_are_moved_by_hand(start: Start, saved: Path) -> None:
     )
     before = slam.key_pose(moved)
     bench.stage.publish("slam_toolbox/feedback", feedback)
-    bench.stage.step_until(lambda: moved in bench.node._moved)
+    bench.stage.step_until(lambda: moved in bench.node._moved_scans.moved)
     bench.stage.call(Clear, "/slam_toolbox/clear_changes")
     bench.stage.call(LoopClosure, "/slam_toolbox/manual_loop_closure")
     assert slam.key_pose(moved) == pytest.approx(before)
     bench.stage.publish("slam_toolbox/feedback", feedback)
-    bench.stage.step_until(lambda: moved in bench.node._moved)
+    bench.stage.step_until(lambda: moved in bench.node._moved_scans.moved)
     bench.stage.call(LoopClosure, "/slam_toolbox/manual_loop_closure")
     assert slam.key_pose(moved) == pytest.approx(wanted, abs=0.1)
     bench.stage.call(ToggleInteractive, "/slam_toolbox/toggle_interactive_mode")
@@ -202,9 +202,9 @@ def test_new_scans_are_paused(start: Start) -> None:
     assert bench.stage.call(Pause, "/slam_toolbox/pause_new_measurements").status
     for _ in range(20):
         bench.look(PLACE, np.zeros(3))
-    assert bench.node._slam.key_count == 0
+    assert bench.node.slam.key_count == 0
     assert bench.stage.call(Pause, "/slam_toolbox/pause_new_measurements").status
-    stand(bench, lambda: bench.node._slam.key_count > 0)
+    stand(bench, lambda: bench.node.slam.key_count > 0)
 
 
 def test_a_lifelong_map_keeps_what_it_needs(start: Start, saved: Path) -> None:

@@ -28,41 +28,41 @@ class LocalizingSlamToolbox(SlamToolbox):
         self.create_subscription(PoseWithCovarianceStamped, "initialpose", self._on_initial_pose, 1)
         self.create_service(Empty, "slam_toolbox/clear_localization_buffer", self._on_clear_buffer)
 
-    def _new_slam(self, saved: Any = None) -> Any:
-        slam = super()._new_slam(saved)
+    def new_slam(self, saved: Any = None) -> Any:
+        slam = super().new_slam(saved)
         slam.localizing = self.localizing
         return slam
 
-    def _allows_interaction(self) -> bool:
+    def allows_interaction(self) -> bool:
         return False
 
-    def _refusal_to_serialize(self) -> str:
+    def refusal_to_save(self) -> str:
         return "a node that localizes does not change its map" if self.localizing else ""
 
-    def _refusal_of(self, request: Any) -> str:
+    def refusal_to_load(self, request: Any) -> str:
         if not self.localizing:
-            return super()._refusal_of(request)
+            return super().refusal_to_load(request)
         if request.match_type == request.LOCALIZE_AT_POSE:
             return ""
         return f"expected match_type 3 (LOCALIZE_AT_POSE) while localizing, found {request.match_type}"
 
     def _on_initial_pose(self, message: Any) -> None:
-        frame = message.header.frame_id or self._settings.map_frame
+        frame = message.header.frame_id or self.settings.map_frame
         if not self.localizing:
             self.get_logger().warning("a pose on initialpose is ignored: the node maps, it does not localize")
-        elif frame != self._settings.map_frame:
-            self.get_logger().error(f"expected a pose in '{self._settings.map_frame}' on initialpose, found '{frame}'")
-        elif self._slam is None or not self._slam.key_count:
+        elif frame != self.settings.map_frame:
+            self.get_logger().error(f"expected a pose in '{self.settings.map_frame}' on initialpose, found '{frame}'")
+        elif self.slam is None or not self.slam.key_count:
             self.get_logger().error("a pose on initialpose is ignored: there is no map yet")
         else:
             pose = pose2_of(message.pose.pose)
-            with self._lock:
-                self._slam.start_at(pose)
+            with self.lock:
+                self.slam.start_at(pose)
             self.get_logger().info(f"localizing at ({pose[0]:.2f}, {pose[1]:.2f}), heading {pose[2]:.2f}")
 
     def _on_clear_buffer(self, request: Any, response: Any) -> Any:
-        if self._slam is not None:
-            with self._lock:
-                self._slam.forget_recent()
+        if self.slam is not None:
+            with self.lock:
+                self.slam.forget_recent()
         self.get_logger().info("forgot the latest scans")
         return response

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,11 +15,9 @@ from rclpy.logging import LoggingSeverity
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.task import Future
 
-from daidalos.common.errors import UserError
 from daidalos.mapping.errors import MappingError
 from daidalos.nodes.conversions import (
     grid_message,
-    pose2_of,
     pose2_of_transform,
     pose_message,
     scan_data,
@@ -30,8 +27,10 @@ from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.parameters import declare, declare_without_effect
 from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.scan_reports import LATE_NS, ScanReports
-from daidalos.nodes.slam_toolbox._graph_markers import MovableScans, graph_markers
+from daidalos.nodes.slam_toolbox._graph_markers import graph_markers
+from daidalos.nodes.slam_toolbox._moved_scans import MovedScans
 from daidalos.nodes.slam_toolbox._parameters import WITHOUT_EFFECT, SlamToolboxParameters
+from daidalos.nodes.slam_toolbox._saved_graphs import SavedGraphs
 from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import nanoseconds, time_message
 
@@ -62,16 +61,16 @@ class SlamToolbox(ManagedNode):
 
         from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 
-        self._settings = p = declare(self, self.kind, reconfigure=self._reconfigure)
+        self.settings = p = declare(self, self.kind, reconfigure=self._reconfigure)
         # Launch files that give it, even as false, change the state themselves.
         is_managed = p.use_lifecycle_manager or "use_lifecycle_manager" in self._parameter_overrides
         declare_without_effect(self, WITHOUT_EFFECT)
         for name in ("paused_new_measurements", "paused_processing", "interactive_mode"):
             self.declare_parameter(name, value=False)
         self._apply_logging()
-        self._slam: Any = None
+        self.slam: Any = None
         self._saved: Any = None
-        self._lock = threading.Lock()
+        self.lock = threading.Lock()
         self._reports = ScanReports(self)
         self._waiting: deque[tuple[int, Any]] = deque(maxlen=None if self.keeps_every_scan else p.scan_queue_size)
         self._current: tuple[int, Any] | None = None
@@ -80,7 +79,7 @@ class SlamToolbox(ManagedNode):
         self._listener = TransformListener(self._buffer, self)
         self._sensor_poses = SensorPoses(self._buffer, p.base_frame, self.get_logger())
         self._broadcaster = TransformBroadcaster(self)
-        self._movable: MovableScans | None = None
+        self._moved_scans: MovedScans | None = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._compiled = warm_up_in_background("daidalos.mapping", self.get_logger())
         self._start_timer = None if is_managed else self.create_timer(_AUTOSTART, self._autostart, clock=self._steady)
@@ -100,14 +99,14 @@ class SlamToolbox(ManagedNode):
         from nav_msgs.msg import MapMetaData, OccupancyGrid
         from nav_msgs.srv import GetMap
         from sensor_msgs.msg import LaserScan
-        from slam_toolbox.srv import DeserializePoseGraph, Pause, Reset, SaveMap, SerializePoseGraph
+        from slam_toolbox.srv import Pause, Reset, SaveMap
         from visualization_msgs.msg import MarkerArray
 
-        p = self._settings
-        self._saved = self._load(p.map_file_name) if p.map_file_name else None
-        self._scans, self._drawn_keys = 0, -1
-        self._moved: dict[int, Any] = {}
-        self._map_to_odom: Any = None
+        p = self.settings
+        graphs = SavedGraphs(self)
+        self._saved = graphs.load(p.map_file_name) if p.map_file_name else None
+        self._scans, self.drawn_keys = 0, -1
+        self.map_to_odom: Any = None
         self._map_publisher = self.create_publisher(OccupancyGrid, p.map_name, LATCHED)
         self._metadata_publisher = self.create_publisher(MapMetaData, f"{p.map_name}_metadata", LATCHED)
         self._pose_publisher = self.create_publisher(PoseWithCovarianceStamped, "pose", 10)
@@ -117,53 +116,41 @@ class SlamToolbox(ManagedNode):
         self.create_service(GetMap, "slam_toolbox/dynamic_map", self._on_get_map)
         self.create_service(Pause, "slam_toolbox/pause_new_measurements", self._on_pause)
         self.create_service(Reset, "slam_toolbox/reset", self._on_reset)
-        self.create_service(SerializePoseGraph, "slam_toolbox/serialize_map", self._on_serialize)
-        self.create_service(DeserializePoseGraph, "slam_toolbox/deserialize_map", self._on_deserialize)
         if p.use_map_saver:
             self.create_service(SaveMap, "slam_toolbox/save_map", self._on_save)
-        self._configure_interaction()
+        self._moved_scans = MovedScans(self)
         self._compiled.add_done_callback(self._begin)
-
-    def _configure_interaction(self) -> None:
-        """Create the services by which key scans are moved by hand."""
-        from sensor_msgs.msg import LaserScan
-        from slam_toolbox.srv import Clear, LoopClosure, ToggleInteractive
-
-        self.create_service(Clear, "slam_toolbox/clear_changes", self._on_clear_changes)
-        self.create_service(LoopClosure, "slam_toolbox/manual_loop_closure", self._on_manual_closure)
-        self.create_service(ToggleInteractive, "slam_toolbox/toggle_interactive_mode", self._on_toggle_interactive)
-        self._scan_publisher = self.create_publisher(LaserScan, "slam_toolbox/scan_visualization", 10)
-        self._movable = MovableScans(self, self._settings.map_frame, self._on_moved, self._on_dragged)
 
     def _begin(self, compiled: Future) -> None:
         """Start to process scans."""
         compiled.result()
-        with self._lock:
-            self._slam = self._new_slam(self._saved)
+        with self.lock:
+            self.slam = self.new_slam(self._saved)
             if self._saved is not None:
                 self._put_robot()
         self._saved = None
         self._reports.start()
         self.get_logger().info("ready for scans")
 
-    def _new_slam(self, saved: Any = None) -> Any:
+    def new_slam(self, saved: Any = None) -> Any:
+        """Return the library's object of a new map, or of a saved one."""
         from daidalos.mapping.slam import Slam
 
-        return Slam(self._settings, saved)
+        return Slam(self.settings, saved)
 
     def _put_robot(self) -> None:
         """Set where the robot starts in the map, by the parameters: at a pose, or where the map begins."""
-        p = self._settings
+        p = self.settings
         if p.map_start_pose:
-            self._slam.start_at(p.map_start_pose)
+            self.slam.start_at(p.map_start_pose)
         elif p.map_start_at_dock:
-            self._slam.start_at_first()
+            self.slam.start_at_first()
         else:
-            self._slam.start_at((0.0, 0.0, 0.0))
+            self.slam.start_at((0.0, 0.0, 0.0))
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Start to work on scans and to publish."""
-        p = self._settings
+        p = self.settings
         self._reports.start()
         scans, transforms = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
         # A scan may wait for its odometry; the map and the services do not wait with it.
@@ -188,32 +175,37 @@ class SlamToolbox(ManagedNode):
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Forget the map."""
-        if self._movable is not None:
-            self._movable.shutdown()
-            self._movable = None
-        with self._lock:
-            self._slam = None
+        if self._moved_scans is not None:
+            self._moved_scans.close()
+            self._moved_scans = None
+        with self.lock:
+            self.slam = None
         return super().on_cleanup(state)
 
     def _reconfigure(self, parameters: SlamToolboxParameters) -> None:
-        self._settings = parameters
+        self.settings = parameters
         self._apply_logging()
-        if self._slam is not None:
-            with self._lock:
-                self._slam.reconfigure(parameters)
+        if self.slam is not None:
+            with self.lock:
+                self.slam.reconfigure(parameters)
 
     def _apply_logging(self) -> None:
-        if self._settings.debug_logging:
+        if self.settings.debug_logging:
             self.get_logger().set_level(LoggingSeverity.DEBUG)
 
     # Scans.
 
+    def resume(self) -> None:
+        """Go on with the scans that wait."""
+        if self.is_active:
+            self._pump.reset()
+
     def _on_scan(self, scan: Any) -> None:
         self._reports.came()
-        if not self.is_active or self._is("paused_new_measurements"):
+        if not self.is_active or self.is_set("paused_new_measurements"):
             return
         self._scans += 1
-        if self._scans % self._settings.throttle_scans:
+        if self._scans % self.settings.throttle_scans:
             return
         self._waiting.append((self._reports.now_ns, scan))
         self._pump.reset()
@@ -221,18 +213,18 @@ class SlamToolbox(ManagedNode):
     async def _work(self) -> None:
         """Work on the scan that has waited longest."""
         self._pump.cancel()
-        if self._slam is None or not self._waiting or self._is("paused_processing"):
+        if self.slam is None or not self._waiting or self.is_set("paused_processing"):
             return
         self._current = self._waiting.popleft()
         try:
             await self._process(self._current[1])
         finally:
             self._current = None
-        if self._waiting and self.is_active:
-            self._pump.reset()
+        if self._waiting:
+            self.resume()
 
     async def _process(self, scan: Any) -> None:
-        p, frame = self._settings, scan.header.frame_id
+        p, frame = self.settings, scan.header.frame_id
         mount = self._sensor_poses.mount(frame)
         if mount is None:
             why = self._sensor_poses.missing(frame)
@@ -243,12 +235,12 @@ class SlamToolbox(ManagedNode):
             text = f"a scan of '{frame}' is not used: {p.odom_frame} -> {p.base_frame} is known for later times only"
             self._reports.report("late", text)
             return
-        with self._lock:
-            if self._slam is None:
+        with self.lock:
+            if self.slam is None:
                 return
             data = scan_data(scan, mount)
-            result = self._slam.add_scan(nanoseconds(scan.header.stamp), data, pose2_of_transform(odometry.transform))
-            self._map_to_odom = self._slam.map_to_odom if self._slam.key_count else None
+            result = self.slam.add_scan(nanoseconds(scan.header.stamp), data, pose2_of_transform(odometry.transform))
+            self.map_to_odom = self.slam.map_to_odom if self.slam.key_count else None
             self._after_scan(result)
         if result.problem:
             self._reports.report(result.problem.split(":")[0], f"a scan of '{frame}': {result.problem}")
@@ -260,13 +252,13 @@ class SlamToolbox(ManagedNode):
 
     def _watch(self) -> None:
         """Report a scan that waits for its odometry in vain, and that no scans come."""
-        p = self._settings
+        p = self.settings
         if self._current is not None and self._reports.now_ns - self._current[0] > LATE_NS:
             scan = self._current[1]
             _, why = self._buffer.can_transform_core(p.odom_frame, p.base_frame, scan.header.stamp)
             text = f"scans of '{scan.header.frame_id}' wait for the transform {p.odom_frame} -> {p.base_frame}"
             self._reports.report("odometry", f"{text}: {why or 'it has just come'}")
-        if self._reports.is_silent() and not self._is("paused_new_measurements"):
+        if self._reports.is_silent() and not self.is_set("paused_new_measurements"):
             publishers = self.count_publishers(p.scan_topic)
             self._reports.report("silence", f"no scans come on {p.scan_topic}, which has {publishers} publishers")
 
@@ -276,54 +268,58 @@ class SlamToolbox(ManagedNode):
         from geometry_msgs.msg import PoseWithCovarianceStamped
 
         message = PoseWithCovarianceStamped()
-        message.header.stamp, message.header.frame_id = stamp, self._settings.map_frame
+        message.header.stamp, message.header.frame_id = stamp, self.settings.map_frame
         message.pose.pose = pose_message(result.pose)
         covariance = np.zeros((6, 6))
         planar = result.covariance
-        covariance[:2, :2] = self._settings.position_covariance_scale * planar[:2, :2]
-        covariance[5, 5] = self._settings.yaw_covariance_scale * planar[2, 2]
+        covariance[:2, :2] = self.settings.position_covariance_scale * planar[:2, :2]
+        covariance[5, 5] = self.settings.yaw_covariance_scale * planar[2, 2]
         message.pose.covariance = covariance.ravel()
         self._pose_publisher.publish(message)
 
     def _publish_transform(self) -> None:
-        if self._map_to_odom is None:
+        if self.map_to_odom is None:
             return
         # Stamped ahead, as slam_toolbox does: those who ask for "now" need not wait for the next one.
-        stamp = time_message(self.get_clock().now().nanoseconds + round(1e9 * self._settings.transform_timeout))
-        frames = self._settings.map_frame, self._settings.odom_frame
-        self._broadcaster.sendTransform(transform_stamped(self._map_to_odom, *frames, stamp))
+        stamp = time_message(self.get_clock().now().nanoseconds + round(1e9 * self.settings.transform_timeout))
+        frames = self.settings.map_frame, self.settings.odom_frame
+        self._broadcaster.sendTransform(transform_stamped(self.map_to_odom, *frames, stamp))
 
     # The map.
 
     def _map_message(self) -> Any:
-        with self._lock:
-            grid = self._slam.grid(_SCANS_A_MAP)
+        with self.lock:
+            grid = self.slam.grid(_SCANS_A_MAP)
         stamp = self.get_clock().now().to_msg()
-        return grid_message(grid.data, grid.resolution, grid.origin, self._settings.map_frame, stamp)
+        return grid_message(grid.data, grid.resolution, grid.origin, self.settings.map_frame, stamp)
 
     def _publish_map(self) -> None:
-        if self._slam is None:
+        if self.slam is None:
             return
         self._publish_graph()
-        with self._lock:  # after a loop closure the grid goes on changing although no scan is added
-            if self._slam.key_count == self._drawn_keys and not self._slam.render(0):
+        with self.lock:  # after a loop closure the grid goes on changing although no scan is added
+            if self.slam.key_count == self.drawn_keys and not self.slam.render(0):
                 return
-        self._drawn_keys = self._slam.key_count
+        self.drawn_keys = self.slam.key_count
         message = self._map_message()
         if message.info.width and message.info.height:
             self._map_publisher.publish(message)
             self._metadata_publisher.publish(message.info)
 
     def _publish_graph(self) -> None:
-        if not self._graph_publisher.get_subscription_count() or self._is("interactive_mode"):
-            return
-        with self._lock:
-            poses, edges = self._slam.key_poses, self._slam.edges
+        if self._graph_publisher.get_subscription_count() and not self.is_set("interactive_mode"):
+            self.publish_graph(with_scans=True)
+
+    def publish_graph(self, *, with_scans: bool) -> None:
+        """Publish the pose graph's edges, and its key scans where they cannot be moved."""
+        with self.lock:
+            poses, edges = self.slam.key_poses, self.slam.edges
         stamp = self.get_clock().now().to_msg()
-        self._graph_publisher.publish(graph_markers(poses, edges, self._settings.map_frame, stamp, with_scans=True))
+        markers = graph_markers(poses, edges, self.settings.map_frame, stamp, with_scans=with_scans)
+        self._graph_publisher.publish(markers)
 
     def _on_get_map(self, request: Any, response: Any) -> Any:
-        if self._slam is not None:
+        if self.slam is not None:
             response.map = self._map_message()
         return response
 
@@ -331,12 +327,12 @@ class SlamToolbox(ManagedNode):
         from daidalos.mapping.map_file import save_map
 
         name = request.name.data or "map"
-        if self._slam is None or not self._slam.key_count:
+        if self.slam is None or not self.slam.key_count:
             self.get_logger().warning("there is no map to be saved yet")
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
-        with self._lock:
-            grid = self._slam.grid()
+        with self.lock:
+            grid = self.slam.grid()
         try:
             save_map(grid, name)
         except (OSError, MappingError) as error:
@@ -347,80 +343,13 @@ class SlamToolbox(ManagedNode):
         self.get_logger().info(f"saved the map to {name}.pgm and {name}.yaml")
         return response
 
-    # Saved pose graphs.
+    # What kinds of nodes differ in.
 
-    def _load(self, name: str) -> Any:
-        """Return a saved pose graph.
-
-        Raises
-        ------
-        MapFileError
-            When it cannot be read.
-        """
-        from daidalos.mapping.pose_graph_file import load_pose_graph
-
-        saved = load_pose_graph(name)
-        self.get_logger().info(f"read a pose graph of {len(saved.clouds)} scans from {name}")
-        if saved.resolution != self._settings.resolution:
-            self.get_logger().info(
-                f"its map had cells of {saved.resolution:g} m and is drawn with {self._settings.resolution:g} m now"
-            )
-        return saved
-
-    def _on_serialize(self, request: Any, response: Any) -> Any:
-        from daidalos.mapping.pose_graph_file import save_pose_graph
-
-        response.result = response.RESULT_FAILED_TO_WRITE_FILE
-        problem = self._refusal_to_serialize()
-        if not problem and (self._slam is None or not self._slam.key_count):
-            problem = "there is no map yet"
-        if not problem and not request.filename:
-            problem = "the request has no filename"
-        if problem:
-            self.get_logger().error(f"cannot save the pose graph: {problem}")
-            return response
-        with self._lock:
-            saved = self._slam.saved()
-        try:
-            files = save_pose_graph(saved, Path(request.filename))
-        except MappingError as error:
-            self.get_logger().error(f"cannot save the pose graph: {error}")
-            return response
-        response.result = response.RESULT_SUCCESS
-        self.get_logger().info(f"saved {len(saved.clouds)} scans to {files[0]} and {files[1]}")
-        return response
-
-    def _refusal_to_serialize(self) -> str:
+    def refusal_to_save(self) -> str:
         """Return why the pose graph is not saved now, an empty string where it is."""
         return ""
 
-    def _on_deserialize(self, request: Any, response: Any) -> Any:
-        try:
-            self._deserialize(request)
-        except UserError as error:
-            self.get_logger().error(f"cannot load the pose graph: {error}")
-        return response
-
-    def _deserialize(self, request: Any) -> None:
-        refusal = self._refusal_of(request)
-        if refusal:
-            raise UserError(refusal)
-        if not request.filename:
-            raise UserError("the request has no filename")
-        if self._slam is None:
-            raise UserError("the algorithms are still being prepared; try again")
-        pose = (request.initial_pose.x, request.initial_pose.y, request.initial_pose.theta)
-        if not np.isfinite(pose).all():
-            raise UserError(f"expected a finite initial_pose, found {pose}")
-        slam = self._new_slam(self._load(request.filename))
-        if request.match_type == request.START_AT_FIRST_NODE:
-            slam.start_at_first()
-        else:
-            slam.start_at(pose)
-        slam.render()
-        self._use(slam)
-
-    def _refusal_of(self, request: Any) -> str:
+    def refusal_to_load(self, request: Any) -> str:
         """Return why a pose graph is not loaded like that, an empty string where it is."""
         if request.match_type in (request.START_AT_FIRST_NODE, request.START_AT_GIVEN_POSE):
             return ""
@@ -428,120 +357,44 @@ class SlamToolbox(ManagedNode):
             return "match_type 3 (LOCALIZE_AT_POSE) needs a node that localizes; here it is 1 or 2"
         return f"expected match_type 1 (first node) or 2 (given pose), found {request.match_type}"
 
-    def _use(self, slam: Any) -> None:
+    def allows_interaction(self) -> bool:
+        """Return whether this kind of node has an interactive mode."""
+        return True
+
+    def use(self, slam: Any) -> None:
         """Take a map in place of the one that there was."""
-        with self._lock:
-            self._slam = slam
-            self._map_to_odom = None
-            self._drawn_keys = -1
-            self._moved.clear()
+        with self.lock:
+            self.slam = slam
+            self.map_to_odom = None
+            self.drawn_keys = -1
+            if self._moved_scans is not None:
+                self._moved_scans.forget()
             self._waiting.clear()
 
     # Pauses and beginning anew.
 
-    def _is(self, flag: str) -> bool:
+    def is_set(self, flag: str) -> bool:
+        """Return the value of a parameter that is true or false."""
         return bool(self.get_parameter(flag).value)
 
-    def _set(self, flag: str, value: bool) -> None:
+    def set_flag(self, flag: str, value: bool) -> None:
+        """Set a parameter that is true or false."""
         from rclpy.parameter import Parameter
 
         self.set_parameters([Parameter(flag, value=value)])
 
     def _on_pause(self, request: Any, response: Any) -> Any:
-        paused = not self._is("paused_new_measurements")
-        self._set("paused_new_measurements", paused)
+        paused = not self.is_set("paused_new_measurements")
+        self.set_flag("paused_new_measurements", paused)
         self.get_logger().info("new scans are ignored" if paused else "new scans are used")
         response.status = True
         return response
 
     def _on_reset(self, request: Any, response: Any) -> Any:
-        if self._slam is not None:
-            self._use(self._new_slam())
+        if self.slam is not None:
+            self.use(self.new_slam())
         if request.pause_new_measurements:
-            self._set("paused_new_measurements", value=True)
+            self.set_flag("paused_new_measurements", value=True)
         response.result = response.RESULT_SUCCESS
         self.get_logger().info("began with an empty map")
-        return response
-
-    # Key scans moved by hand.
-
-    def _may_interact(self) -> bool:
-        """Return whether key scans may be moved by hand, after a warning where not."""
-        if self._settings.enable_interactive_mode and self._allows_interaction():
-            return True
-        self.get_logger().warning("the interactive mode is disabled, the request is ignored")
-        return False
-
-    def _allows_interaction(self) -> bool:
-        """Return whether this kind of node has an interactive mode."""
-        return True
-
-    def _on_toggle_interactive(self, request: Any, response: Any) -> Any:
-        if self._may_interact():
-            on = not self._is("interactive_mode")
-            self._set("interactive_mode", on)
-            self._set("paused_processing", on)
-            self._moved.clear()
-            self._show_movable()
-            self.get_logger().info(f"the interactive mode is {'on' if on else 'off'}")
-            if not on and self.is_active:
-                self._pump.reset()
-        return response
-
-    def _show_movable(self) -> None:
-        """Offer the key scans to be moved while the interactive mode is on, and publish the edges."""
-        if self._slam is None or self._movable is None:
-            return
-        with self._lock:
-            poses, edges = self._slam.key_poses, self._slam.edges
-        is_on = self._is("interactive_mode")
-        stamp = self.get_clock().now().to_msg()
-        self._movable.show(poses if is_on else poses[:0], stamp)
-        self._graph_publisher.publish(
-            graph_markers(poses, edges, self._settings.map_frame, stamp, with_scans=not is_on)
-        )
-
-    def _on_moved(self, index: int, pose: Any) -> None:
-        self._moved[index] = pose2_of(pose)
-        self.get_logger().info(f"key scan {index} was moved; slam_toolbox/manual_loop_closure applies it")
-
-    def _on_dragged(self, index: int, pose: Any) -> None:
-        """Show a key scan where it is dragged to."""
-        from sensor_msgs.msg import LaserScan
-
-        with self._lock:
-            if not 0 <= index < self._slam.key_count:
-                return
-            points = self._slam.key_clouds[index].ends
-        angles = np.arctan2(points[:, 1], points[:, 0])
-        count = 720
-        ranges = np.full(count, np.inf, np.float32)
-        beams = ((angles + np.pi) / (2 * np.pi) * count).astype(int) % count
-        np.minimum.at(ranges, beams, np.hypot(*points.T).astype(np.float32))
-        stamp = self.get_clock().now().to_msg()
-        frame = "scan_visualization"
-        self._broadcaster.sendTransform(transform_stamped(pose2_of(pose), self._settings.map_frame, frame, stamp))
-        scan = LaserScan(angle_min=-np.pi, angle_max=np.pi, angle_increment=2 * np.pi / count, range_max=1e3)
-        scan.header.stamp, scan.header.frame_id, scan.ranges = stamp, frame, ranges
-        self._scan_publisher.publish(scan)
-
-    def _on_manual_closure(self, request: Any, response: Any) -> Any:
-        if not self._may_interact():
-            return response
-        if not self._moved:
-            self.get_logger().warning("no key scan was moved")
-            return response
-        with self._lock:
-            self._slam.move_keys(self._moved)
-            self._map_to_odom = self._slam.map_to_odom
-        self.get_logger().info(f"optimized the graph with {len(self._moved)} key scans moved by hand")
-        self._moved.clear()
-        self._drawn_keys = -1
-        self._show_movable()
-        return response
-
-    def _on_clear_changes(self, request: Any, response: Any) -> Any:
-        if self._may_interact():
-            self._moved.clear()
-            self._show_movable()
         return response

@@ -17,19 +17,21 @@ class LifelongSlamToolbox(SlamToolbox):
         super().__init__(**kwargs)
         self._decay = KeyScanDecay(declare(self, LifelongConfig))
 
-    def _allows_interaction(self) -> bool:
+    def allows_interaction(self) -> bool:
+        """Return False: scans that are removed cannot be moved."""
         return False
 
-    def _use(self, slam: Any) -> None:
+    def use(self, slam: Any) -> None:
+        """Take a map in place of the one that there was, with new scores of its scans."""
         self._decay.reset()
-        super()._use(slam)
+        super().use(slam)
 
     def _after_scan(self, result: Any) -> None:
         if result.added:
-            removed = self._decay.update(self._slam)
+            removed = self._decay.update(self.slam)
             if removed:
-                self._drawn_keys = -1
-                self.get_logger().debug(f"removed {removed} key scans, {self._slam.key_count} are left")
+                self.drawn_keys = -1
+                self.get_logger().debug(f"removed {removed} key scans, {self.slam.key_count} are left")
 
 
 def main() -> int:

@@ -12,7 +12,7 @@ class LocalizationSlamToolbox(LocalizingSlamToolbox):
     def configure(self) -> None:
         """Warn where no map is given."""
         super().configure()
-        if not self._settings.map_file_name:
+        if not self.settings.map_file_name:
             self.get_logger().warning(
                 "no map_file_name is given: slam_toolbox/deserialize_map has to load the map to be localized in"
             )

@@ -18,7 +18,7 @@ class MapAndLocalizationSlamToolbox(LocalizingSlamToolbox):
         """Start with what the parameter says, and serve the change."""
         from std_srvs.srv import SetBool
 
-        settings = self._settings
+        settings = self.settings
         assert isinstance(settings, MapAndLocalizationParameters)
         self.localizing = settings.localization_on_configure
         super().configure()
@@ -26,9 +26,9 @@ class MapAndLocalizationSlamToolbox(LocalizingSlamToolbox):
 
     def _on_set_mode(self, request: Any, response: Any) -> Any:
         self.localizing = request.data
-        if self._slam is not None:
-            with self._lock:
-                self._slam.localizing = request.data
+        if self.slam is not None:
+            with self.lock:
+                self.slam.localizing = request.data
         response.success = True
         response.message = "localizing" if request.data else "mapping"
         self.get_logger().info(response.message)

@@ -25,7 +25,7 @@ class SynchronousSlamToolbox(SlamToolbox):
 
     def _on_scan(self, scan: Any) -> None:
         super()._on_scan(scan)
-        if len(self._waiting) > _LONG_QUEUE and self._slam is not None:
+        if len(self._waiting) > _LONG_QUEUE and self.slam is not None:
             self._reports.report("queue", f"{len(self._waiting)} scans wait: the robot should stop until they are used")
 
     def _on_clear_queue(self, request: Any, response: Any) -> Any:
