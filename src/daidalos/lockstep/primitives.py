@@ -101,12 +101,19 @@ class Lock:
         return self._locked
 
     def __enter__(self) -> bool:
-        self.acquire()
+        if self._locked:
+            self.acquire()
+        else:
+            self._locked = True
         self.holder = self.scheduler.current
         return True
 
     def __exit__(self, *exception: object) -> None:
-        self.release()
+        if self._waiting or not self._locked:
+            self.release()
+        else:
+            self._locked = False
+            self.holder = None
 
     def _at_fork_reinit(self) -> None:
         self._locked, self._waiting, self.holder = False, None, None
@@ -130,11 +137,16 @@ class RLock:
         if self._owner is me:
             self._count += 1
             return True
-        if not self._lock.acquire(blocking, timeout):
+        lock = self._lock
+        if not lock._locked:
+            lock._locked = True
+        elif not lock.acquire(blocking, timeout):
             return False
         self._owner, self._count = me, 1
-        self._lock.holder = me if isinstance(me, Thread) else None
+        lock.holder = me if me.__class__ is Thread else None
         return True
+
+    __enter__ = acquire
 
     def release(self) -> None:
         """Give the lock back once.
@@ -149,10 +161,7 @@ class RLock:
         self._count -= 1
         if not self._count:
             self._owner = None
-            self._lock.release()
-
-    def __enter__(self) -> bool:
-        return self.acquire()
+            self._lock.__exit__()
 
     def __exit__(self, *exception: object) -> None:
         self.release()

@@ -1,4 +1,7 @@
-"""Publishers: snapshots to subscriptions of the same process, bytes to others that are subscribed."""
+"""Publishers: snapshots to subscriptions of the same process, bytes to others that are subscribed.
+
+A subscription with a queue gets a snapshot of its own, which its callback may change; those with a sink share one.
+"""
 
 from __future__ import annotations
 
@@ -65,8 +68,13 @@ class Publisher:
             stamp = time.time_ns()
             if self._latched:
                 self._history.append((self._codec.snapshot(message), stamp, sequence, self._gid))
+            snapshot, shared = self._codec.snapshot, None
             for subscription in self._targets:
-                subscription.accept_local((self._codec.snapshot(message), stamp, sequence, self._gid))
+                if subscription.sink is None:
+                    copy = snapshot(message)
+                else:
+                    copy = shared = snapshot(message) if shared is None else shared
+                subscription.accept_local((copy, stamp, sequence, self._gid))
             if has_remote and self._remote is not None:
                 self._remote.put(self._codec.parts(message), sequence, stamp)
 
@@ -75,8 +83,13 @@ class Publisher:
         sequence, stamp = self._next_sequence(), time.time_ns()
         if self._latched:
             self._history.append((self._codec.decode(data), stamp, sequence, self._gid))
+        decode, shared = self._codec.decode, None
         for subscription in self._targets:
-            subscription.accept_local((self._codec.decode(data), stamp, sequence, self._gid))
+            if subscription.sink is None:
+                message = decode(data)
+            else:
+                message = shared = decode(data) if shared is None else shared
+            subscription.accept_local((message, stamp, sequence, self._gid))
         if self._has_remote_subscribers and self._remote is not None:
             self._remote.put([data], sequence, stamp)
 

@@ -41,6 +41,9 @@ class Subscription:
     impairment
         Takes the samples of this process in place of the queue, to pass them on to `enqueue` late or not at all;
         None where the connection is perfect.
+    sink
+        Takes the messages in place of the queue, at once and on the thread that delivers them; None where they are
+        queued. It must not change a message: all sinks of a process get the same one.
     """
 
     _gave_up_at = -_SHORT_FOR_NS
@@ -61,6 +64,7 @@ class Subscription:
         self._left_some = False
         self._space = threading.Event()
         self.impairment: Impairment | None = None
+        self.sink: Callable[[Any], None] | None = None
 
     def __len__(self) -> int:
         return len(self.queue)
@@ -111,14 +115,22 @@ class Subscription:
             self._notify(SampleInfo(stamp, stamp, sequence, gid))
         if self.impairment is not None:
             self.impairment(self, item)
+        else:
+            self.enqueue(item)
+
+    def enqueue(self, item: tuple[Any, ...]) -> None:
+        """Queue a sample of this process, past the impairment."""
+        if self.sink is not None:
+            self.sink(item[0])
             return
         self.queue.append(item)
         self.on_ready()
 
-    def enqueue(self, item: tuple[Any, ...]) -> None:
-        """Queue a sample that an impairment has taken."""
-        self.queue.append(item)
-        self.on_ready()
+    def drain_into(self, sink: Callable[[Any], None]) -> None:
+        """Set the sink, and pass on what is queued."""
+        self.sink = sink
+        while (taken := self.take()) is not None:
+            sink(taken[0])
 
     def accept(self, sample: Any) -> None:
         """Queue a sample of another process."""
@@ -134,7 +146,10 @@ class Subscription:
         if self._limit is not None and len(self.queue) >= self._limit:
             self._wait_for_space()
         self.queue.append(item)
-        self.on_ready()
+        if self.sink is not None:
+            self.drain_into(self.sink)
+        else:
+            self.on_ready()
 
     def observe(self, observer: Callable[[SampleInfo], None]) -> None:
         """Call `observer` with every sample, on the thread that queues it."""

@@ -132,7 +132,7 @@ class Client(ServiceEnd[ClientHandle]):
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         """Take a response, after the messages that became ready before it."""
-        executor = THREAD.executor
+        executor = THREAD.running[0]
         if not self._has_stood_back and executor is not None and not executor._ready.empty():
             self._has_stood_back = True
             self._rcl_hook()

@@ -6,12 +6,10 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from rclpy.clock import ROSClock
-from rclpy.clock_type import ClockType
 from rclpy.impl.entities import SubscriptionHandle
 from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rclpy.time import Time
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -31,7 +29,7 @@ class TimeSource:
         self._clock_sub: SubscriptionHandle | None = None
         self._node_weak_ref: weakref.ref[Node] | None = None
         self._associated_clocks: list[ROSClock] = []
-        self._last_time_set = Time(clock_type=ClockType.ROS_TIME)
+        self._last_ns = 0
         self._ros_time_is_active = False
         if node is not None:
             self.attach_node(node)
@@ -61,14 +59,7 @@ class TimeSource:
 
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._clock_sub = SubscriptionHandle(node.handle, Clock, node.resolve_topic_name(CLOCK_TOPIC), qos)
-        self._clock_sub.set_on_ready(self._on_clock)
-
-    def _on_clock(self) -> None:
-        subscription = self._clock_sub
-        taken = subscription.impl.take() if subscription is not None else None
-        while subscription is not None and taken is not None:
-            self.clock_callback(taken[0])
-            taken = subscription.impl.take()
+        self._clock_sub.set_sink(self.clock_callback)
 
     def _unsubscribe(self) -> None:
         subscription, self._clock_sub = self._clock_sub, None
@@ -117,7 +108,7 @@ class TimeSource:
         """
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")
-        clock.set_ros_time_override(self._last_time_set)
+        clock.handle.set_override_ns(self._last_ns)
         clock._set_ros_time_is_active(self.ros_time_is_active)
         self._associated_clocks.append(clock)
 
@@ -129,10 +120,9 @@ class TimeSource:
             if node is not None:
                 node.get_logger().warning(f"ignored the negative time {nanoseconds} ns on {CLOCK_TOPIC}", once=True)
             return
-        time = Time(nanoseconds=nanoseconds, clock_type=ClockType.ROS_TIME)
-        self._last_time_set = time
+        self._last_ns = nanoseconds
         for clock in self._associated_clocks:
-            clock.set_ros_time_override(time)
+            clock._handle.set_override_ns(nanoseconds)
 
     def _on_parameter_event(self, parameter_list: list[Parameter[Any]]) -> Any:
         from rcl_interfaces.msg import SetParametersResult

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from . import _report
-from ._history import Fixed, History, motion_of
+from ._history import Fixed, History, Item, motion_of
 from ._messages import check_name, message, read
 from ._paths import latest_common, parent_of, path
 from ._rigid import IDENTITY, Rigid, canonical, chain, compose, inverse
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 _CACHE_TIME_NS = 10_000_000_000
 _ROUNDING = 1e-12
 _TOLERANCE = 1e-2
+
+
+Entry = tuple[int, str, Item]
+"""A transform as buffers keep it: its stamp in nanoseconds, the child, and the parent with the motion."""
 
 
 class BufferCore:
@@ -66,34 +70,29 @@ class BufferCore:
         self._set(transform, authority, Fixed)
 
     def _set(self, transform: Any, authority: str, kind: type[History] | type[Fixed]) -> None:
-        stamp, parent, child, motion = read(transform)
-        x, y, z, a, b, c, d = motion
-        squared = a * a + b * b + c * c + d * d
-        if not -_TOLERANCE < squared - 1.0 < _TOLERANCE or x + y + z != x + y + z or not parent or not child:
-            problem = _report.problem_with(parent, child, motion, authority, _TOLERANCE)
-            if problem:
-                _report.error(problem)
-                return
-        if parent[0] == "/" or child[0] == "/":
-            parent, child = parent.removeprefix("/"), child.removeprefix("/")
-        if parent == child or not parent or not child:
-            _report.error(_report.problem_with(parent, child, motion, authority, _TOLERANCE))
-            return
-        if not -_ROUNDING < squared - 1.0 < _ROUNDING:
-            scale = squared**-0.5
-            motion = (x, y, z, a * scale, b * scale, c * scale, d * scale)
+        entry = checked(transform, authority)
+        if entry is not None:
+            self._insert((entry,), authority, kind)
+
+    def _insert(self, entries: Iterable[Entry], authority: str, kind: type[History] | type[Fixed]) -> None:
+        """Insert transforms that `checked` returned."""
+        frames, authorities = self._frames, self._authorities
+        late: list[Entry] = []
         with self._lock:
-            history = self._frames.get(child)
-            if history.__class__ is not kind:
-                history = self._frames[child] = History(self._age_ns) if kind is History else Fixed()
-            if parent not in self._frames:
-                self._frames[parent] = None
-            accepted = history.insert(stamp, (parent, motion))
-            if accepted:
-                self._authorities[child] = authority
-        if not accepted:
+            for entry in entries:
+                stamp, child, item = entry
+                history = frames.get(child)
+                if history.__class__ is not kind:
+                    history = frames[child] = History(self._age_ns) if kind is History else Fixed()
+                if item[0] not in frames:
+                    frames[item[0]] = None
+                if history.insert(stamp, item):
+                    authorities[child] = authority
+                else:
+                    late.append(entry)
+        for stamp, child, _ in late:
             _report.old_data(child, stamp, authority)
-        elif self._watchers:
+        if self._watchers:
             self._notify_listeners()
 
     def clear(self) -> None:
@@ -386,3 +385,43 @@ class BufferCore:
             time_ns(time),
             duration_ns(averaging_interval),
         )
+
+
+def checked(transform: Any, authority: str) -> Entry | None:
+    """Return a message of a transform as buffers keep it; None, after an error was logged, for an invalid one."""
+    stamp, parent, child, motion = read(transform)
+    x, y, z, a, b, c, d = motion
+    squared = a * a + b * b + c * c + d * d
+    if not -_TOLERANCE < squared - 1.0 < _TOLERANCE or x + y + z != x + y + z or not parent or not child:
+        problem = _report.problem_with(parent, child, motion, authority, _TOLERANCE)
+        if problem:
+            _report.error(problem)
+            return None
+    if parent[0] == "/" or child[0] == "/":
+        parent, child = parent.removeprefix("/"), child.removeprefix("/")
+    if parent == child or not parent or not child:
+        _report.error(_report.problem_with(parent, child, motion, authority, _TOLERANCE))
+        return None
+    if not -_ROUNDING < squared - 1.0 < _ROUNDING:
+        scale = squared**-0.5
+        motion = (x, y, z, a * scale, b * scale, c * scale, d * scale)
+    return stamp, child, (parent, motion)
+
+
+class SharedEntries:
+    """Entries of the message that came last, read once for all buffers of a process that get it.
+
+    Only for messages that nobody changes.
+    """
+
+    def __init__(self) -> None:
+        self._last: tuple[Any, list[Entry]] = None, []
+
+    def of(self, message: Any, authority: str) -> list[Entry]:
+        """Return the valid transforms of a ``tf2_msgs/msg/TFMessage``."""
+        last, entries = self._last
+        if message is not last:
+            found = (checked(transform, authority) for transform in message.transforms)
+            entries = [entry for entry in found if entry is not None]
+            self._last = message, entries
+        return entries

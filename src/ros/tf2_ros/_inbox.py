@@ -28,19 +28,13 @@ class Inbox(Subscription):
     def __init__(self, handle: SubscriptionHandle, *arguments: Any) -> None:
         self._arrivals: deque[None] = deque(maxlen=100)
         super().__init__(handle, *arguments)
-        handle.set_on_ready(self._receive)
+        handle.set_sink(self._receive)
 
-    def _receive(self) -> None:
+    def _receive(self, message: Any) -> None:
+        self._callback(message)
         node = self._rcl_node() if self._rcl_node is not None else None
-        executor = node.executor if node is not None else None
-        counted = not getattr(executor, "_spins", False)
-        taken = self._impl.take()
-        while taken is not None:
-            self._callback(taken[0])
-            if counted:
-                self._arrivals.append(None)
-            taken = self._impl.take()
-        if counted:
+        if not getattr(node.executor if node is not None else None, "_spins", False):
+            self._arrivals.append(None)
             self._rcl_hook()
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:

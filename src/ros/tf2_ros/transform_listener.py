@@ -11,6 +11,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
+from tf2_py._history import History
+from tf2_py.buffer_core import SharedEntries
 
 from ._inbox import create_inbox
 from .buffer import Buffer
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 DEFAULT_TF_TOPIC = "/tf"
 DEFAULT_STATIC_TF_TOPIC = "/tf_static"
 _AUTHORITY = "default_authority"
+_SHARED = SharedEntries()
 
 
 class TransformListener:
@@ -67,8 +70,11 @@ class TransformListener:
             buffer.follow(node)
         self.node = node
         self.group = ReentrantCallbackGroup()
+        # Who replaces how messages are taken or inserted gets each of them.
+        own = type(self).callback is TransformListener.callback and type(buffer).set_transform is Buffer.set_transform
         if not static_only:
-            self.tf_sub = create_inbox(node, TFMessage, tf_topic, self.callback, qos, self.group)
+            take = self._insert if own else self.callback
+            self.tf_sub = create_inbox(node, TFMessage, tf_topic, take, qos, self.group)
         self.tf_static_sub = create_inbox(
             node, TFMessage, tf_static_topic, self.static_callback, static_qos, self.group
         )
@@ -96,6 +102,9 @@ class TransformListener:
         for name in ("tf_sub", "tf_static_sub"):
             if hasattr(self, name):
                 self.node.destroy_subscription(getattr(self, name))
+
+    def _insert(self, data: Any) -> None:
+        self.buffer._insert(_SHARED.of(data, _AUTHORITY), _AUTHORITY, History)
 
     def callback(self, data: Any) -> None:
         """Insert the transforms of a ``tf2_msgs/msg/TFMessage`` into the buffer."""

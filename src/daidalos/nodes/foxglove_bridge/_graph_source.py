@@ -86,13 +86,10 @@ class RosGraphSource:
 
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._clock = SubscriptionHandle(self._handle, Clock, _CLOCK, qos)
-        self._clock.set_on_ready(self._on_clock)
+        self._clock.set_sink(self._on_clock)
 
-    def _on_clock(self) -> None:
-        taken = self._clock.impl.take() if self._clock is not None else None
-        if taken is None:
-            return
-        clock = taken[0].clock
+    def _on_clock(self, message: Any) -> None:
+        clock = message.clock
         self._time = clock.sec * 1_000_000_000 + clock.nanosec
         for observer in self._observers:
             observer.time_advanced(self._time)

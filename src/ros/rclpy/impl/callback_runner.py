@@ -83,8 +83,7 @@ class CallbackRunner:
         """Take what is ready and run the callback; its group has been reserved."""
         suspended = False
         thread = THREAD
-        outer = thread.executor, thread.entity
-        thread.executor, thread.entity = self, entity
+        outer, thread.running = thread.running, (self, entity)
         in_a_row = self._spins and self._helps
         try:
             for _ in range(_AT_ONCE):
@@ -100,7 +99,7 @@ class CallbackRunner:
                 if not in_a_row or suspended or not self._may_run_again(hook):
                     return
         finally:
-            thread.executor, thread.entity = outer
+            thread.running = outer
             if in_a_row and entity._rcl_has_more():
                 hook()
             if not suspended:
@@ -124,12 +123,11 @@ class CallbackRunner:
 
     def _run_task(self, task: Task) -> None:
         thread = THREAD
-        outer = thread.executor, thread.entity
-        thread.executor, thread.entity = self, task._entity
+        outer, thread.running = thread.running, (self, task._entity)
         try:
             task()
         finally:
-            thread.executor, thread.entity = outer
+            thread.running = outer
         if task.done():
             _raise_from(task)
 

@@ -324,6 +324,13 @@ class SubscriptionHandle(QueueHandle):
         """Return how many publishers send samples here."""
         return len(self.node.session.matching_endpoints(self.endpoint))
 
+    def set_sink(self, sink: MethodType) -> None:
+        """Call a method, which does not keep its object alive, with every message on the thread that receives it.
+
+        Nothing is queued any more. The method must not change the messages, which other sinks get as well.
+        """
+        self.impl.drain_into(weakly(sink))
+
     def take_message(self, message_type: Any, raw: bool = False) -> tuple[Any, dict[str, Any]] | None:
         """Return the oldest message, or its CDR bytes, with what is known of it; None when there is none."""
         taken = self.impl.take_raw() if raw else self.impl.take()

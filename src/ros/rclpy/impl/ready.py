@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
+from types import MethodType
 from typing import Any
 
 
@@ -88,13 +89,13 @@ class ReadyNotifier:
         raise NotImplementedError
 
 
-def weakly(method: Callable[..., Any]) -> Callable[..., None]:
+def weakly(method: MethodType) -> Callable[..., None]:
     """Return a function that calls a bound method as long as its object lives."""
-    reference = weakref.WeakMethod(method)
+    reference, function = weakref.ref(method.__self__), method.__func__  # faster to call than a `WeakMethod`
 
     def call(*arguments: Any) -> None:
         alive = reference()
         if alive is not None:
-            alive(*arguments)
+            function(alive, *arguments)
 
     return call

@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 
 
 class _Thread(threading.local):
-    """The present thread's executor and entity, None outside of callbacks."""
+    """The executor and the entity whose callback the present thread runs, both None outside of callbacks."""
 
-    executor: CallbackRunner | None = None
-    entity: Any = None
+    running: tuple[CallbackRunner | None, Any] = (None, None)  # one attribute, as each access is looked up by thread
 
 
 THREAD = _Thread()
@@ -60,14 +59,14 @@ def wait_for(future: Future, context: Context, services: Iterable[str], timeout_
     ROSInterruptException
         When the context is shut down.
     """
-    executor = THREAD.executor
+    executor, entity = THREAD.running
     if executor is not None and executor._helps:
-        executor._help_until_done(future, THREAD.entity, services, timeout_s)
+        executor._help_until_done(future, entity, services, timeout_s)
     else:
         gate = _Gate()
         future.on_wake(gate.open)
         context.on_shutdown(gate.open)
-        with nullcontext() if executor is None else executor._blocked(THREAD.entity, services):
+        with nullcontext() if executor is None else executor._blocked(entity, services):
             gate.pass_through(timeout_s)
     if not future._pending_over() and not context.ok():
         raise ROSInterruptException()
