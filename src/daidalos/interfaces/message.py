@@ -7,6 +7,7 @@ from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from copy import deepcopy
+from sys import byteorder
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from daidalos.interfaces.definition import INTEGER_RANGES
@@ -19,6 +20,13 @@ TYPECODES = {
     "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q",
 }  # fmt: skip
 _DTYPES = {code: name for name, code in TYPECODES.items() if name != "char"}
+_DTYPE_TEXTS = {
+    code: f"{'|' if array(code).itemsize == 1 else '<' if byteorder == 'little' else '>'}"
+    f"{'f' if code in 'fd' else 'i' if code.islower() else 'u'}{array(code).itemsize}"
+    for code in TYPECODES.values()
+}
+"""What numpy calls the types of arrays in the machine's byte order, which is faster to ask for than their names."""
+_AT_ONCE = 4096  # bytes up to which a copy of a copy is faster than a view
 _FLOAT32_MAX = 3.4028234663852886e38
 
 
@@ -185,7 +193,9 @@ def check_numbers(name: str, value: object, base: str, upto: int = 0) -> array[A
 
 def _to_array(name: str, value: Any, base: str, code: str) -> array[Any]:
     data = getattr(value, "dtype", None)
-    if data is not None and data.name == _DTYPES[code]:
+    if getattr(data, "str", None) == _DTYPE_TEXTS[code]:
+        if value.nbytes <= _AT_ONCE:
+            return array(code, value.tobytes())
         import numpy
 
         result = array(code)

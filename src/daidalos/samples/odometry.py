@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from daidalos.common.arrays import Array
@@ -11,9 +13,12 @@ from daidalos.samples.sensors import OdometrySample, TransformSample
 _UNKNOWN = 1e12
 
 
+@cache
 def planar_covariance(x: float, y: float, yaw: float) -> Array:
-    """Return a (36,) covariance of a planar pose or twist; components out of the plane are unknown."""
-    return np.diag((x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw)).ravel()
+    """Return a (36,) covariance of a planar pose or twist, to be read only; those out of the plane are unknown."""
+    covariance = np.diag((x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw)).ravel()
+    covariance.flags.writeable = False
+    return covariance
 
 
 def wheel_odometry(

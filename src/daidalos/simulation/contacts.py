@@ -72,6 +72,7 @@ class ContactMonitor:
         self.instance = instance
         self._ignore = ignore
         self._touches: dict[tuple[str, str, str], Touch] = {}
+        self._passed = b""  # the pairs of the last contacts of which none counts
 
     @property
     def touches(self) -> tuple[Touch, ...]:
@@ -81,6 +82,7 @@ class ContactMonitor:
     def bind(self, physics: Physics) -> None:
         """Update the geoms after a compilation."""
         self._geoms = physics.geoms
+        self._passed = b""
         self._sides = np.zeros(physics.model.ngeom, dtype=np.int8)
         for geom, (name, _) in self._geoms.items():
             self._sides[geom] = _MINE if name == self.instance.name else 0 if name in self._ignore else _OTHER
@@ -90,12 +92,17 @@ class ContactMonitor:
         if not data.ncon:
             return
         contact = data.contact
-        sides = self._sides[contact.geom]
+        pairs = contact.geom
+        place = pairs.tobytes()
+        if place == self._passed:
+            return  # as a robot that drives on the ground does for most of its steps
+        sides = self._sides[pairs]
         here = sides[:, 0] + sides[:, 1] == _MINE + _OTHER
         if not here.any():
+            self._passed = place
             return
         for index in np.flatnonzero(here & (contact.dist < 0)):
-            mine, other = (int(geom) for geom in contact.geom[index])
+            mine, other = (int(geom) for geom in pairs[index])
             if self._sides[mine] != _MINE:
                 mine, other = other, mine
             other_model, info = self._geoms[other]

@@ -29,5 +29,5 @@ class EncoderError:
         """Return the measured travel of wheels since the last measurement [m]."""
         measured = travel * (1.0 + self.slip)
         if self.noise:
-            measured = measured + random.normal(0.0, 1.0, len(travel)) * self.noise * np.sqrt(np.abs(travel))
+            measured = measured + random.standard_normal(len(travel)) * self.noise * np.sqrt(np.abs(travel))
         return measured

@@ -6,6 +6,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeVar
 
 from daidalos.samples.sensors import Sample
@@ -47,7 +48,8 @@ class PacedSimulation:
         self._period_ns = period_ns
         self._failed = failed
         self._requests: deque[Callable[[], None]] = deque()
-        self._wake = threading.Condition()
+        self._gate = threading.Lock()  # held while nobody has anything to tell the thread
+        self._gate.acquire()
         self._paused = False
         self._running = False
         self._due = 0
@@ -73,17 +75,15 @@ class PacedSimulation:
 
     def stop(self) -> None:
         """End; waits for the step that is being made."""
-        with self._wake:
-            self._running = False
-            self._wake.notify_all()
+        self._running = False
+        self._wake()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
             self._thread.join(timeout=5.0)
 
     def set_paused(self, paused: bool) -> None:
         """Pause or resume."""
-        with self._wake:
-            self._paused = paused
-            self._wake.notify_all()
+        self._paused = paused
+        self._wake()
 
     def step(self, count: int) -> None:
         """Make steps between two of its own and publish what was said; meant for a time that stands still."""
@@ -100,9 +100,8 @@ class PacedSimulation:
 
     def post(self, request: Callable[[], Any]) -> None:
         """Call a function between two steps, without waiting for it."""
-        with self._wake:
-            self._requests.append(request)
-            self._wake.notify_all()
+        self._requests.append(request)
+        self._wake()
 
     def call(self, request: Callable[[Simulation], T]) -> T:
         """Call a function with the simulation between two steps, and return its result.
@@ -152,16 +151,21 @@ class PacedSimulation:
 
     def _wait_until(self, due: int) -> bool:
         """Sleep until the next step is due or a request comes, and do what was requested; False at the end."""
-        with self._wake:
+        while self._running and not self._requests:
             if self._paused:
-                self._wake.wait_for(lambda: not self._running or self._requests or not self._paused)
-            else:
-                left = due - time.monotonic_ns()
-                if left > 0:
-                    self._wake.wait_for(lambda: not self._running or self._requests, left * 1e-9)
+                self._gate.acquire()
+                continue
+            left = due - time.monotonic_ns()
+            if left <= 0 or not self._gate.acquire(timeout=left * 1e-9):
+                break
         while self._requests:
             self._requests.popleft()()
         return self._running
+
+    def _wake(self) -> None:
+        """Make the thread look at what it was told."""
+        with suppress(RuntimeError):  # it is about to
+            self._gate.release()
 
     def _next_due(self, due: int) -> int:
         """Return when the next step is due so that the wanted speed is kept."""

@@ -40,6 +40,8 @@ class StateTopics:
         self._gate = RateGate(_STATES_RATE)
         self._contacts: dict[str, Any] = {}
         self._published_touches = 0
+        self._still: dict[tuple[str, str | None], tuple[Any, Any]] = {}
+        self._still_in: Any = None
         self._states = [node.create_publisher(ModelStates, f"{place}/model_states", 10) for place in places]
         self._link_states = [node.create_publisher(LinkStates, f"{place}/link_states", 10) for place in places]
         self._contacts_publisher = node.create_publisher(ContactsState, "/gazebo/contacts", LATCHED)
@@ -62,12 +64,40 @@ class StateTopics:
         from gazebo_msgs.msg import LinkStates, ModelStates
 
         models: list[tuple[str, str | None]] = [(name, None) for name in simulation.models]
-        _publish_motions(simulation, self._states, ModelStates, models)
+        self._publish_motions(simulation, self._states, ModelStates, models)
         if any(_has_subscribers(publisher) for publisher in self._link_states):
             links: list[tuple[str, str | None]] = [
                 (name, link) for name in simulation.models for link in simulation.instance(name).model.links
             ]
-            _publish_motions(simulation, self._link_states, LinkStates, links)
+            self._publish_motions(simulation, self._link_states, LinkStates, links)
+
+    def _publish_motions(
+        self, simulation: Simulation, publishers: list[Any], kind: Any, entities: list[tuple[str, str | None]]
+    ) -> None:
+        listening = [publisher for publisher in publishers if _has_subscribers(publisher)]
+        if not listening:
+            return
+        motions = [self._motion(simulation, *entity) for entity in entities]
+        message = kind(
+            name=["::".join(filter(None, entity)) for entity in entities],
+            pose=[pose for pose, _ in motions],
+            twist=[twist for _, twist in motions],
+        )
+        for publisher in listening:
+            publisher.publish(message)
+
+    def _motion(self, simulation: Simulation, model: str, link: str | None) -> tuple[Any, Any]:
+        """Return the pose and the twist of a model or link; those of what cannot move are made once."""
+        if self._still_in is not simulation.physics:  # another one follows whenever such a model is moved
+            self._still_in = simulation.physics
+            self._still.clear()
+        motion = self._still.get((model, link))
+        if motion is None:
+            motion = pose_message(simulation.pose(model, link)), twist_message(*simulation.velocity(model, link))
+            instance = simulation.instance(model)
+            if instance.build.base is not None and not instance.build.trees and not instance.components:
+                self._still[model, link] = motion
+        return motion
 
     def _publish_contacts(self, simulation: Simulation) -> None:
         """Publish what the watched models have touched whenever that changes."""
@@ -81,16 +111,3 @@ def _has_subscribers(publisher: Publisher) -> bool:
     return publisher.handle.has_subscribers
 
 
-def _publish_motions(
-    simulation: Simulation, publishers: list[Any], kind: Any, entities: list[tuple[str, str | None]]
-) -> None:
-    listening = [publisher for publisher in publishers if _has_subscribers(publisher)]
-    if not listening:
-        return
-    message = kind(
-        name=["::".join(filter(None, entity)) for entity in entities],
-        pose=[pose_message(simulation.pose(*entity)) for entity in entities],
-        twist=[twist_message(*simulation.velocity(*entity)) for entity in entities],
-    )
-    for publisher in listening:
-        publisher.publish(message)

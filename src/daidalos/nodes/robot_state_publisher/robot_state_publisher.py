@@ -139,10 +139,8 @@ class RobotStatePublisher(Node):
         self._positions[told.rows] = np.asarray(message.position, dtype=np.float64)[told.columns]
         stamp = message.header.stamp
         if self._settings.ignore_timestamp or self._is_due(nanoseconds(stamp), told.rows):
-            translations, rotations = self._tree.joint_transforms(self._positions)
-            self._tf_publisher.publish(
-                told.bytes.write(stamp.sec, stamp.nanosec, translations[told.moved], rotations[told.moved])
-            )
+            poses = self._tree.joint_transforms(self._positions, told.moved)
+            self._tf_publisher.publish(told.bytes.write(stamp.sec, stamp.nanosec, *poses))
 
     def _meaning(self, names: tuple[str, ...]) -> _JointUpdate:
         """Return the cached indices of a message about these joints."""
