@@ -123,3 +123,11 @@ def test_poses_at_zero():
     expected = readable_poses(robot, {})
     for name, pose in link_poses_at_zero(robot).items():
         np.testing.assert_allclose(pose.matrix, expected[name], atol=1e-9)
+
+
+def test_transforms_of_some_joints_are_those_of_all():
+    tree = KinematicTree(random_robot(9, np.random.default_rng(5)))
+    positions = np.linspace(-1.0, 1.0, len(tree.joint_names))
+    rows = np.array([7, 2, 3])
+    for some, every in zip(tree.joint_transforms(positions, rows), tree.joint_transforms(positions), strict=True):
+        np.testing.assert_array_equal(some, every[rows])

@@ -13,6 +13,7 @@ from daidalos.interfaces.codec import codec_of
 from daidalos.transport import subscription as module
 from daidalos.transport.backend import BackendSubscription, SampleInfo
 from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
+from daidalos.transport.publisher import Publisher
 from daidalos.transport.qos import Qos, Reliability
 from daidalos.transport.subscription import Subscription
 
@@ -140,3 +141,34 @@ def test_best_effort_waits_for_nobody():
     receiver.accept(BURST)
     assert time.perf_counter() - before < module._TIMEOUT_S
     assert len(receiver.subscription) == DEPTH
+
+
+def test_a_sink_gets_what_is_queued_and_then_every_sample_at_once() -> None:
+    receiver = Receiver()
+    receiver.accept(2)
+    got: list[int] = []
+    receiver.subscription.drain_into(lambda message: got.append(message.data))
+    receiver.subscription.accept(CODEC.encode(Int32(data=7)))
+    receiver.subscription.accept_local((Int32(data=8), 0, 0, bytes(16)))
+    assert got == [0, 1, 7, 8]
+    assert not len(receiver.subscription)
+
+
+def test_sinks_share_a_message_that_queues_and_the_publisher_do_not() -> None:
+    node = NodeInfo("key", "name", "/")
+    publisher = Publisher(
+        EndpointInfo(EndpointKind.PUBLISHER, node, "/a", "std_msgs/msg/Int32", "", Qos(depth=DEPTH), bytes(16)), CODEC
+    )
+    sinks, queues = [Receiver().subscription for _ in range(2)], [Receiver().subscription for _ in range(2)]
+    got: list[Int32] = []
+    for sink in sinks:
+        sink.drain_into(got.append)
+    publisher.add_targets((sinks[0], *queues, sinks[1]))
+    sent = Int32(data=3)
+    for message in (sent, CODEC.encode(sent)):
+        got.clear()
+        publisher.publish(message)
+        taken = [item[0] for queue in queues if (item := queue.take())]
+        assert got[0] is got[1]
+        assert len({id(one) for one in (*taken, got[0], sent)}) == 4
+        assert all(one == sent for one in (*taken, *got))

@@ -82,6 +82,11 @@ class Turtle:
         self.x, self.y = (min(max(value, 0.0), SIZE) for value in wanted)
         return wanted if (self.x, self.y) != wanted else None
 
+    @property
+    def is_still(self) -> bool:
+        """Whether it has no speed."""
+        return not (self.forward or self.sideways or self.angular)
+
     def stop(self) -> None:
         """Stop."""
         self.forward = self.sideways = self.angular = 0.0

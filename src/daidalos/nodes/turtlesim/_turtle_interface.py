@@ -56,8 +56,9 @@ class TurtleInterface:
         self._moved = moved
         self._rotation: _Rotation | None = None
         name = turtle.name
-        self._pose = node.create_publisher(Pose, f"{name}/pose", 10)
-        self._colour = node.create_publisher(Color, f"{name}/color_sensor", 10)
+        events = node.waking_events
+        self._pose = node.create_publisher(Pose, f"{name}/pose", 10, event_callbacks=events)
+        self._colour = node.create_publisher(Color, f"{name}/color_sensor", 10, event_callbacks=events)
         self._commands = node.create_subscription(Twist, f"{name}/cmd_vel", self._on_command, 10)
         self._services = [
             node.create_service(SetPen, f"{name}/set_pen", self._on_set_pen),
@@ -73,21 +74,27 @@ class TurtleInterface:
             handle_accepted_callback=self._on_goal,
         )
 
-    def publish(self, colour: tuple[int, int, int]) -> None:
-        """Publish the turtle's pose and the colour below it."""
+    def publish(self, colour_below: Callable[[Turtle], tuple[int, int, int]]) -> bool:
+        """Publish the turtle's pose and the colour below it to those who listen; return whether anybody does."""
         from turtlesim.msg import Color, Pose
 
         turtle = self.turtle
-        self._pose.publish(
-            Pose(
-                x=turtle.x,
-                y=turtle.y,
-                theta=turtle.theta,
-                linear_velocity=math.hypot(turtle.forward, turtle.sideways) if turtle.sideways else turtle.forward,
-                angular_velocity=turtle.angular,
+        wants_pose, wants_colour = self._pose.handle.has_subscribers, self._colour.handle.has_subscribers
+        if wants_pose:
+            speed = math.hypot(turtle.forward, turtle.sideways) if turtle.sideways else turtle.forward
+            self._pose.publish(
+                Pose(
+                    x=turtle.x,
+                    y=turtle.y,
+                    theta=turtle.theta,
+                    linear_velocity=speed,
+                    angular_velocity=turtle.angular,
+                )
             )
-        )
-        self._colour.publish(Color(r=colour[0], g=colour[1], b=colour[2]))
+        if wants_colour:
+            r, g, b = colour_below(turtle)
+            self._colour.publish(Color(r=r, g=g, b=b))
+        return wants_pose or wants_colour
 
     def close(self) -> None:
         """Close topics, services and action."""
@@ -105,6 +112,7 @@ class TurtleInterface:
         sideways = twist.linear.y if self._node.settings.holonomic else 0.0
         if self._can_be(twist.linear.x, sideways, twist.angular.z):
             self.turtle.command(twist.linear.x, sideways, twist.angular.z, self._now_s())
+            self._node.wake()
 
     def _on_set_pen(self, request: Any, response: Any) -> Any:
         if request.off:
@@ -118,6 +126,7 @@ class TurtleInterface:
             before = (self.turtle.x, self.turtle.y)
             self.turtle.teleport_relative(request.linear, request.angular)
             self._moved(self.turtle, before)
+            self._node.wake()
         return response
 
     def _on_teleport_absolute(self, request: Any, response: Any) -> Any:
@@ -125,6 +134,7 @@ class TurtleInterface:
             before = (self.turtle.x, self.turtle.y)
             self.turtle.teleport(request.x, request.y, request.theta)
             self._moved(self.turtle, before)
+            self._node.wake()
         return response
 
     def _can_be(self, *numbers: float) -> bool:
@@ -143,6 +153,7 @@ class TurtleInterface:
             )
             self.abort_rotation()
         self._rotation = _Rotation(goal, Future(), self.turtle.theta)
+        self._node.wake()
         goal.execute()
 
     def _end_of_rotation(self, goal: Any) -> Any:
@@ -150,13 +161,13 @@ class TurtleInterface:
         rotation = self._rotation
         return rotation.over if rotation is not None and rotation.goal == goal else None
 
-    def turn(self) -> None:
-        """Turn towards the goal of the action, if there is one."""
+    def turn(self) -> bool:
+        """Turn towards the goal of the action, if there is one; return whether there is."""
         from turtlesim.action import RotateAbsolute
 
         rotation = self._rotation
         if rotation is None:
-            return
+            return False
         goal = rotation.goal
         left = self.turtle.turn_towards(goal.request.theta, self._now_s())
         goal.publish_feedback(RotateAbsolute.Feedback(remaining=left))
@@ -167,6 +178,7 @@ class TurtleInterface:
         elif self.turtle.angular == 0.0:
             self._node.get_logger().info("Rotation goal completed successfully")
             self._end_rotation(goal.succeed)
+        return True
 
     def abort_rotation(self) -> None:
         """Abort the goal of the action, if there is one."""

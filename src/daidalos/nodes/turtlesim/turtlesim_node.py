@@ -8,6 +8,7 @@ import random
 from dataclasses import dataclass
 from typing import Any
 
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
@@ -64,11 +65,19 @@ class TurtleSim(Node):
         self.create_service(Empty, "reset", self._on_reset)
         self.create_service(Spawn, "spawn", self._on_spawn)
         self.create_service(Kill, "kill", self._on_kill)
-        self._window = self.create_publisher(TurtleWindow, "~/_window", QoSProfile(depth=20))
+        self._resting_until: int | None = None
+        self._window = self.create_publisher(
+            TurtleWindow, "~/_window", QoSProfile(depth=20), event_callbacks=self.waking_events
+        )
         self.create_service(GetTurtleDrawing, "~/_drawing", self._on_drawing)
         self.get_logger().info(f"Starting turtlesim with node name {self.get_fully_qualified_name()}")
+        self._timer = self.create_timer(UPDATE_S, self._update)
         self._spawn("", SIZE / 2, SIZE / 2, 0.0)
-        self.create_timer(UPDATE_S, self._update)
+
+    @property
+    def waking_events(self) -> PublisherEventCallbacks:
+        """Events of a publisher whose subscriptions end the rest."""
+        return PublisherEventCallbacks(matched=lambda status: self.wake())
 
     @property
     def window_topic(self) -> str:
@@ -77,16 +86,39 @@ class TurtleSim(Node):
 
     def _update(self) -> None:
         now_s = self.get_clock().now().nanoseconds * 1e-9
+        rests = not self._window.handle.has_subscribers
         for interface in self._turtles.values():
             turtle = interface.turtle
-            before = (turtle.x, turtle.y)
-            interface.turn()
+            before, is_turning = (turtle.x, turtle.y), interface.turn()
             hit = turtle.step(now_s)
             if hit is not None:
                 self.get_logger().warning(f"Oh no! I hit the wall! (Clamping from [x={hit[0]:f}, y={hit[1]:f}])")
-            interface.publish(self._drawing.colour_at(turtle.x, turtle.y) or self._background)
+            is_heard = interface.publish(self._colour_below)
             self._draw(turtle, before)
+            rests = rests and turtle.is_still and before == (turtle.x, turtle.y) and not (is_heard or is_turning)
         self._show()
+        if rests:
+            self._rest()
+
+    def _rest(self) -> None:
+        """Make no updates while nothing moves and nobody looks."""
+        left = self._timer.time_until_next_call()
+        if left is not None:
+            self._resting_until = self.get_clock().now().nanoseconds + left
+            self._timer.cancel()
+
+    def wake(self) -> None:
+        """Make updates again, at the times at which they would have been."""
+        if self._resting_until is None:
+            return
+        due, self._resting_until = self._resting_until, None
+        period = self._timer.timer_period_ns
+        self._timer.timer_period_ns = (due - self.get_clock().now().nanoseconds) % period or period
+        self._timer.reset()
+        self._timer.timer_period_ns = period
+
+    def _colour_below(self, turtle: Turtle) -> tuple[int, int, int]:
+        return self._drawing.colour_at(turtle.x, turtle.y) or self._background
 
     def _draw(self, turtle: Turtle, before: tuple[float, float]) -> None:
         """Draw what a turtle's pen left behind on its way."""
@@ -151,6 +183,7 @@ class TurtleSim(Node):
             return ""
         turtle = Turtle(name, x, y, theta, kind=self._free_kind())
         self._turtles[name] = TurtleInterface(self, turtle, self._draw)
+        self.wake()
         self.get_logger().info(f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]")
         return name
 
@@ -173,12 +206,15 @@ class TurtleSim(Node):
         from daidalos_msgs.msg import TurtleSprite, TurtleWindow
 
         drawing = self._drawing
+        if not self._window.handle.has_subscribers:
+            self._shown = ()
+            return
         turtles = [interface.turtle for interface in self._turtles.values()]
         seen = [(turtle.name, turtle.kind, turtle.x, turtle.y, turtle.theta) for turtle in turtles]
         shown = (self._background, drawing.clearings, drawing.drawn, seen)
         self._still = self._still + 1 if shown == self._shown else 0
         self._shown = shown
-        if self._still % _STILL_UPDATES or not self._window.get_subscription_count():
+        if self._still % _STILL_UPDATES:
             return
         (r, g, b), (lines, pens) = self._background, drawing.news()
         self._window.publish(
