@@ -109,5 +109,3 @@ class StateTopics:
 
 def _has_subscribers(publisher: Publisher) -> bool:
     return publisher.handle.has_subscribers
-
-
