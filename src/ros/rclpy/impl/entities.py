@@ -324,7 +324,7 @@ class SubscriptionHandle(QueueHandle):
         """Return how many publishers send samples here."""
         return len(self.node.session.matching_endpoints(self.endpoint))
 
-    def set_sink(self, sink: MethodType) -> None:
+    def set_sink(self, sink: Callable[[Any], None]) -> None:
         """Call a method, which does not keep its object alive, with every message on the thread that receives it.
 
         Nothing is queued any more. The method must not change the messages, which other sinks get as well.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from types import MethodType
 from typing import Any
 
 
@@ -89,9 +88,10 @@ class ReadyNotifier:
         raise NotImplementedError
 
 
-def weakly(method: MethodType) -> Callable[..., None]:
+def weakly(method: Callable[..., Any]) -> Callable[..., None]:
     """Return a function that calls a bound method as long as its object lives."""
-    reference, function = weakref.ref(method.__self__), method.__func__  # faster to call than a `WeakMethod`
+    bound: Any = method
+    reference, function = weakref.ref(bound.__self__), bound.__func__  # faster to call than a `WeakMethod`
 
     def call(*arguments: Any) -> None:
         alive = reference()
