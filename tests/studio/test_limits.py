@@ -13,8 +13,8 @@ from contextlib import contextmanager
 import psutil
 import pytest
 
-from daidalos.studio import client as client_module
 from daidalos.studio import connections
+from daidalos.studio import stream_client as client_module
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.connections import Connection, Connections
 from daidalos.studio.limits import MAX_ENTRIES, MAX_ERRORS, MAX_PUBLICATIONS, PIECE_BYTES, SLICE_REQUESTS, Turn

@@ -4,47 +4,24 @@ from __future__ import annotations
 
 import os
 import shutil
-import ssl
 import subprocess
 import sys
 import webbrowser
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlencode
 
 from rclpy.node import Node
 
-from daidalos.common.errors import Location, UserError
 from daidalos.distribution import DISTRIBUTION
 from daidalos.nodes.asset_folders import is_asset_readable
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.packages import package_share
+from daidalos.nodes.server_access import Access, chosen_token, warn_of_exposure
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
-from daidalos.studio.server import DEFAULT_PORT, LOOPBACK, StudioServer
-
-TOKEN_VARIABLE = "DAIDALOS_STUDIO_TOKEN"
-"""Environment variable of the token; parameters of nodes can be read by everyone in the graph."""
-MIN_TOKEN_LENGTH = 16
-
-
-@dataclass(frozen=True)
-class Access:
-    """Settings of who may connect to a studio.
-
-    Attributes
-    ----------
-    hosts, origins
-        See `daidalos.studio.access.AccessPolicy`.
-    certificate, key
-        Files in PEM format; None: connections are not encrypted. The key may be in the certificate's file.
-    """
-
-    hosts: tuple[str, ...] = ()
-    origins: tuple[str, ...] = ()
-    certificate: Path | None = None
-    key: Path | None = None
+from daidalos.studio.guarded_server import LOOPBACK
+from daidalos.studio.server import DEFAULT_PORT, StudioServer
 
 
 class Studio:
@@ -89,8 +66,8 @@ class Studio:
             arrangement=arrangement,
             allowed_hosts=access.hosts,
             allowed_origins=access.origins,
-            token=_chosen_token(),
-            tls=None if access.certificate is None else _tls(access.certificate, access.key or access.certificate),
+            token=chosen_token(),
+            tls=access.tls_context(),
             metadata={"ROS_DISTRO": os.environ.get("ROS_DISTRO", DISTRIBUTION)},
         )
         self._server.start()
@@ -123,19 +100,8 @@ class Studio:
         return f"{url}{'&' if '?' in url else '?'}{query}" if query else url
 
     def warn_of_exposure(self, node: Node) -> None:
-        """Print the address for other machines, and warn of what they can do, where they can reach the page.
-
-        The token goes to the terminal only: whoever is in the graph reads the log on ``/rosout``.
-        """
-        url = self._server.remote_url
-        if url is None:
-            return
-        print(f"studio for other machines: {url}", file=sys.stderr, flush=True)
-        secrecy = "" if self._server.is_encrypted else "; the connection is not encrypted (parameter 'tls')"
-        node.get_logger().warning(
-            "whoever on the network has this address with its token sees the graph, publishes, calls services and "
-            f"sets parameters{secrecy}"
-        )
+        """Print the address for other machines, and warn of what they can do, where they can reach the page."""
+        warn_of_exposure(node, self._server, "studio")
 
     def close(self) -> None:
         """Close the page's connections and the port."""
@@ -159,25 +125,3 @@ def open_in_browser(url: str) -> bool:
 def _share_directory(name: str) -> Path | None:
     found = package_share(name)
     return None if found is None else Path(found)
-
-
-def _chosen_token() -> str | None:
-    """Return the token that the user set, None where there is none."""
-    token = os.environ.get(TOKEN_VARIABLE) or None
-    if token is not None and len(token) < MIN_TOKEN_LENGTH:
-        raise UserError(f"{TOKEN_VARIABLE} has {len(token)} characters, expected at least {MIN_TOKEN_LENGTH}")
-    return token
-
-
-def _tls(certificate: Path, key: Path) -> ssl.SSLContext:
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    context.minimum_version = ssl.TLSVersion.TLSv1_2
-    for file in (certificate, key):
-        if not file.is_file():
-            raise UserError("there is no such file, expected a certificate or key in PEM format", Location(str(file)))
-    try:
-        context.load_cert_chain(certificate, key, password="")  # without one, it would be asked for
-    except (OSError, ValueError) as error:
-        reason = error.reason or str(error) if isinstance(error, ssl.SSLError) else str(error)
-        raise UserError(f"cannot be used with the key '{key}': {reason}", Location(str(certificate))) from None
-    return context

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import logging
 from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import Future
-from typing import Any, cast
+from typing import Any
 
-from aiohttp import WSMsgType, web
+from aiohttp import web
 
 from daidalos.studio import frames, protocol
 from daidalos.studio.assets import AssetError, AssetResolver
@@ -23,26 +21,19 @@ from daidalos.studio.limits import (
     MAX_ERRORS,
     MAX_PENDING_REQUESTS,
     MAX_PUBLICATIONS,
-    MAX_REASON_BYTES,
-    MAX_TEXT_BYTES,
     MAX_WATCHED,
-    Turn,
 )
 from daidalos.studio.outbox import Outbox
 from daidalos.studio.protocol import Level, ProtocolError
 from daidalos.studio.source import Graph, GraphSource, Handle, Parameter, Publication, SourceError
+from daidalos.studio.stream_client import StreamClient
 
-_LOGGER = logging.getLogger(__name__)
-
-_CLOSE_TIMEOUT_S = 0.5
-"""Timeout of the closing handshake with a client that is closed for what it did."""
-_POLICY_VIOLATION = 1008
 _ROOM_PERIOD_S = 0.1
 """Period in which an asset that waits checks whether there is room for it."""
 
 
-class Client:
-    """The server's side of one connection; lives in the server's event loop.
+class Client(StreamClient):
+    """The server's side of one connection of the Foxglove protocol; lives in the server's event loop.
 
     Parameters
     ----------
@@ -64,21 +55,13 @@ class Client:
         connection: Connection,
         turns: asyncio.Lock,
     ) -> None:
-        self._socket = socket
-        self._connections = connections
-        self._connection = connection
-        self._turn = Turn(turns)
+        super().__init__(socket, connections, connection, turns)
         self._wanted_assets: deque[tuple[int, str]] = deque()  # numbers of requests and URIs: a task each takes more
         self._sends_assets = False
-        self._drained = asyncio.Event()
         self._errors = 0
-        self._closing: asyncio.Task[None] | None = None
         self._source = source
         self._hub = hub
         self._assets = assets
-        loop = asyncio.get_running_loop()
-        self._awake = asyncio.Event()
-        self.outbox = Outbox(lambda: _wake(loop, self._awake))
         self._subscriptions: dict[int, tuple[int, Handle]] = {}  # number -> channel and handle
         self._subscribed: dict[int, int] = {}  # channel -> number
         self._publications: dict[int, Publication] = {}
@@ -87,59 +70,13 @@ class Client:
         self._graph: Graph | None = None  # as last sent; None: the client did not ask for it
         self._requests: set[asyncio.Task[None]] = set()
 
-    async def run(self) -> None:
-        """Receive and send until the connection ends, a limit is passed or the server stops."""
-        self._connection.complete()
-        self._connection.stream = self
-        sender = asyncio.create_task(self._send())
-        self._connection.want()
-        try:
-            async for message in self._socket:
-                self._connection.complete()
-                async with self._turn:
-                    if message.type is WSMsgType.TEXT:
-                        await self._receive(self._receive_text, message.data)
-                    elif message.type is WSMsgType.BINARY:
-                        await self._receive(self._receive_binary, message.data)
-                if self.outbox.overflowed:
-                    self.stop("too many bytes of replies wait to be read")
-                if self._closing is not None:
-                    break
-                self._connection.want()
-        finally:
-            self._connection.stream = None
-            sender.cancel()
-            for request in self._requests:
-                request.cancel()
-            for _, handle in self._subscriptions.values():
-                handle.close()
-            for publication in self._publications.values():
-                publication.close()
-            with contextlib.suppress(asyncio.CancelledError):
-                await sender
-            if self._closing is not None:
-                await self._closing
-
-    @property
-    def waiting_bytes(self) -> int:
-        """Bytes of replies that wait for the client."""
-        return self.outbox.reply_bytes
-
-    def stop(self, reason: str) -> None:
-        """Close the connection with a reason, for the client's developer and the log."""
-        if self._closing is None:
-            self._connections.note_closed(reason)
-            self._closing = asyncio.create_task(self._close(reason))
-
-    async def _close(self, reason: str) -> None:
-        with contextlib.suppress(TimeoutError, ConnectionError, RuntimeError):
-            async with asyncio.timeout(_CLOSE_TIMEOUT_S):
-                await self._socket.close(
-                    code=_POLICY_VIOLATION, message=reason.encode()[:MAX_REASON_BYTES], drain=False
-                )
-        transport = self._connection.transport
-        if transport is not None:
-            transport.abort()  # what it has not read it will not read
+    def _release(self) -> None:
+        for request in self._requests:
+            request.cancel()
+        for _, handle in self._subscriptions.values():
+            handle.close()
+        for publication in self._publications.values():
+            publication.close()
 
     def graph_changed(self, graph: Graph) -> None:
         """Send the changes of the graph, if the client asked for them."""
@@ -161,28 +98,16 @@ class Client:
         for number in gone:
             self._close_subscription(number)
 
-    async def _send(self) -> None:
-        with contextlib.suppress(ConnectionError):  # the receiving side sees the end as well and closes everything
-            while True:
-                frame = self.outbox.take()
-                if frame is None:
-                    self._drained.set()
-                    await self._awake.wait()
-                    self._awake.clear()
-                elif isinstance(frame, str):
-                    await self._socket.send_str(frame)
-                else:
-                    await self._socket.send_bytes(cast(bytes, frame))  # it takes a bytearray, too
-
     async def _receive(self, handle: Callable[[Any], Coroutine[Any, Any, None]], data: str | bytes) -> None:
         self._errors = 0
-        try:
-            await handle(data)
-        except (ProtocolError, SourceError) as error:
-            self._send_error(str(error))
-        except Exception as error:  # a fault of ours fails this request, and neither the client nor the server
-            _LOGGER.exception("a client's request failed")
-            self._send_error(f"the request failed: {type(error).__name__}")
+
+        async def attempt(data: str | bytes) -> None:
+            try:
+                await handle(data)
+            except (ProtocolError, SourceError) as error:
+                self._send_error(str(error))
+
+        await super()._receive(attempt, data)
 
     def _send_error(self, text: str, level: Level = Level.ERROR) -> None:
         """Send an error of the request under way; of many alike, the first ones."""
@@ -191,9 +116,6 @@ class Client:
             self.outbox.put_reply(protocol.status(level, text[:MAX_ERROR_LENGTH]))
 
     async def _receive_text(self, data: str) -> None:
-        if len(data) > MAX_TEXT_BYTES:
-            self.stop(f"a text frame of {len(data)} characters is longer than {MAX_TEXT_BYTES}")
-            return
         match protocol.parse_text(data, MAX_ENTRIES):
             case protocol.Subscribe(subscriptions):
                 await self._subscribe(subscriptions)
@@ -373,11 +295,6 @@ class Client:
         else:
             self._watched.clear()
             self._watches_all = False
-
-
-def _wake(loop: asyncio.AbstractEventLoop, awake: asyncio.Event) -> None:
-    with contextlib.suppress(RuntimeError):  # the loop has ended
-        loop.call_soon_threadsafe(awake.set)
 
 
 def _deliver_to(outbox: Outbox, subscription: int) -> Callable[[int, bytes], None]:

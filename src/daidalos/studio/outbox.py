@@ -9,10 +9,26 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 from daidalos.studio.frames import message_frame, time_frame
 
+
+@dataclass(frozen=True)
+class Pieces:
+    """Message of several frames, which are sent or left out together."""
+
+    frames: Sequence[str | bytes]
+
+    def __len__(self) -> int:
+        return sum(map(len, self.frames))
+
+
+Content = str | bytes | Pieces
+FrameMaker = Callable[[int, int, Any], str | bytes | bytearray | Pieces]
+"""Function that makes a frame, or several, of a subscription's number, a time [ns] and what was put."""
 BACKLOG = 16
 """Messages that wait per subscription; more only adds latency to a client that is late already."""
 LIGHT_BYTES = 64 << 10
@@ -33,10 +49,13 @@ class Outbox:
     ----------
     wake
         Called, from any thread, when there is something to take after there was nothing.
+    make_frame
+        Makes the frame of a message.
     """
 
-    def __init__(self, wake: Callable[[], None]) -> None:
+    def __init__(self, wake: Callable[[], None], make_frame: FrameMaker = message_frame) -> None:
         self._wake = wake
+        self._make_frame = make_frame
         self._lock = threading.Lock()
         self._replies: deque[str | bytes | bytearray] = deque()
         self._reply_bytes = 0
@@ -72,7 +91,7 @@ class Outbox:
                 self._message_bytes -= queue.bytes
                 queue.clear()
 
-    def put_message(self, subscription: int, nanoseconds: int, payload: bytes) -> None:
+    def put_message(self, subscription: int, nanoseconds: int, payload: Content) -> None:
         """Add a message; unknown subscriptions have just been closed and are ignored."""
         with self._lock:
             queue = self._queues.get(subscription)
@@ -109,7 +128,7 @@ class Outbox:
         if woken:
             self._wake()
 
-    def take(self) -> str | bytes | bytearray | None:
+    def take(self) -> str | bytes | bytearray | Pieces | None:
         """Remove and return the next frame; None when nothing waits, and the next arrival will wake."""
         with self._lock:
             if self._replies:
@@ -127,7 +146,7 @@ class Outbox:
                 self._message_bytes -= len(payload)
                 if queue.waiting:
                     self._turns.append(queue)
-                return message_frame(queue.subscription, nanoseconds, payload)
+                return self._make_frame(queue.subscription, nanoseconds, payload)
             self._sleeping = True
             return None
 
@@ -149,15 +168,15 @@ class _Queue:
     def __init__(self, subscription: int, limit: int) -> None:
         self.subscription = subscription
         self.limit = limit
-        self.waiting: deque[tuple[int, bytes]] = deque()
+        self.waiting: deque[tuple[int, Content]] = deque()
         self.bytes = 0
 
-    def push(self, nanoseconds: int, payload: bytes) -> int:
+    def push(self, nanoseconds: int, payload: Content) -> int:
         self.waiting.append((nanoseconds, payload))
         self.bytes += len(payload)
         return len(payload)
 
-    def pop(self) -> tuple[int, bytes]:
+    def pop(self) -> tuple[int, Content]:
         oldest = self.waiting.popleft()
         self.bytes -= len(oldest[1])
         return oldest

@@ -25,7 +25,11 @@ class PortError(Exception):
     """No port could be opened; the text says which and why."""
 
 
-def open_port(hosts: Sequence[str], wanted: int) -> list[socket.socket]:
+class PortUsedError(PortError):
+    """Every port that was tried is used."""
+
+
+def open_port(hosts: Sequence[str], wanted: int, tried: int = MAX_PORTS_TRIED) -> list[socket.socket]:
     """Open a port on all of the hosts.
 
     Parameters
@@ -34,6 +38,8 @@ def open_port(hosts: Sequence[str], wanted: int) -> list[socket.socket]:
         Addresses or names; those of a family that this machine lacks (IPv6) are left out.
     wanted
         The first port to try; 0 leaves the choice to the system.
+    tried
+        How many ports to try.
 
     Returns
     -------
@@ -45,12 +51,14 @@ def open_port(hosts: Sequence[str], wanted: int) -> list[socket.socket]:
     PortError
         When a host is unknown, none can be listened on, or no port is free.
     """
-    ports = range(wanted, min(wanted + MAX_PORTS_TRIED, 1 << 16)) if wanted else [0] * MAX_PORTS_TRIED
+    ports = range(wanted, min(wanted + tried, 1 << 16)) if wanted else [0] * MAX_PORTS_TRIED
     for port in ports:
         sockets = _open_on_all(hosts, port)
         if sockets is not None:
             return sockets
-    raise PortError(f"no free port from {wanted} to {wanted + len(ports) - 1} on {', '.join(hosts)}")
+    if len(ports) == 1:
+        raise PortUsedError(f"port {wanted} is used on {', '.join(hosts)}")
+    raise PortUsedError(f"no free port from {wanted} to {wanted + len(ports) - 1} on {', '.join(hosts)}")
 
 
 def is_loopback(host: str) -> bool:

@@ -3,71 +3,38 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import logging
-import socket
 import ssl
-import threading
 import uuid
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from aiohttp import web
-from aiohttp.http_exceptions import HttpProcessingError
-from aiohttp.typedefs import Handler
 
 from daidalos.studio import protocol
-from daidalos.studio.access import (
-    TOKEN_QUERY,
-    AccessPolicy,
-    Refusal,
-    entrance,
-    identify,
-    new_token,
-    too_long,
-)
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.client import Client
-from daidalos.studio.connections import Connections
 from daidalos.studio.files import STATIC
+from daidalos.studio.guarded_server import LOOPBACK, GuardedServer
 from daidalos.studio.hub import Changes, Hub
-from daidalos.studio.layouts import MAX_FILE_BYTES, read_layout, write_layout
-from daidalos.studio.limits import HANDSHAKE_S
-from daidalos.studio.local_users import is_of_another_user
+from daidalos.studio.layouts import read_layout, write_layout
 from daidalos.studio.pages import (
     ARRANGEMENT_KEY,
-    HEADERS,
     STATIC_KEY,
     arrangement_of,
     extension_module,
     extensions_of,
     page,
 )
-from daidalos.studio.ports import ACCEPTED_AT_ONCE, ANY_ADDRESS, BACKLOG, is_loopback, open_port, outward_address
 from daidalos.studio.protocol import Level
-from daidalos.studio.source import GraphSource, Parameter, Topic
+from daidalos.studio.source import GraphSource, Handle, Parameter, Topic
 
 DEFAULT_PORT = 8765
-LOOPBACK = ("127.0.0.1", "::1")
-MAX_FRAME_BYTES = 64 << 20  # what a client may send at once; a published image or cloud fits
 REFRESH_DELAY_S = 0.05  # a graph changes in bursts when nodes start
 TIME_PERIOD_S = 1 / 60  # a screen shows no more
-CLOSE_TIMEOUT_S = 0.3
-KEEP_ALIVE_S = 30.0
 
 
-def _is_own_fault(record: logging.LogRecord) -> bool:
-    """Return whether an error of HTTP is not the client's, who could fill the log with what is not HTTP."""
-    return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError | ConnectionError))
-
-
-_HTTP_LOGGER = logging.getLogger(f"{__name__}.http")
-_HTTP_LOGGER.addFilter(_is_own_fault)
-
-
-class StudioServer:
+class StudioServer(GuardedServer):
     """Serves a graph to browsers and to any client of the Foxglove WebSocket protocol.
 
     Parameters
@@ -78,10 +45,8 @@ class StudioServer:
         What clients show as the name of the connection.
     port
         The port to listen on, or the next free one above; 0 for any.
-    hosts
-        Addresses to listen on; loopback unless told otherwise.
-    allowed_hosts, allowed_origins
-        See `AccessPolicy`.
+    hosts, allowed_hosts, allowed_origins, token, tls
+        See `GuardedServer`.
     assets
         Finds meshes and textures; None serves none.
     static
@@ -90,10 +55,6 @@ class StudioServer:
         What else clients are told, e.g. ``{"ROS_DISTRO": "jazzy"}``.
     arrangement
         The layout with which the page opens; None: the page's default.
-    token
-        What clients must send; None: nothing where the server listens on loopback, else a random one.
-    tls
-        Certificate and key; None: connections are not encrypted.
     """
 
     def __init__(
@@ -112,93 +73,27 @@ class StudioServer:
         token: str | None = None,
         tls: ssl.SSLContext | None = None,
     ) -> None:
+        super().__init__(
+            port=port, hosts=hosts, allowed_hosts=allowed_hosts, allowed_origins=allowed_origins, token=token, tls=tls
+        )
         self._source = source
         self._name = name
-        self._wanted_port = port
-        self._hosts = tuple(hosts)
-        if token is None and not all(map(is_loopback, self._hosts)):
-            token = new_token()
-        self._token = token
-        self._tls = tls
-        self._access = AccessPolicy(allowed_hosts, allowed_origins, token)
         self._assets = assets
         self._static = static
         self._metadata = dict(metadata or {})
         self._arrangement = arrangement
         self._session = uuid.uuid4().hex
         self._hub = Hub(source)
-        self._connections = Connections()
-        self._turns = asyncio.Lock()
         self._clients: set[Client] = set()
-        self._sockets: set[web.WebSocketResponse] = set()
+        self._observing: Handle | None = None
         self._refresh_pending = False
         self._time: int | None = None
         self._time_pending = False
-        self._thread: threading.Thread | None = None
-        self._loop: asyncio.AbstractEventLoop | None = None
-        self._stopping: asyncio.Event | None = None
-        self._port = 0
-
-    @property
-    def port(self) -> int:
-        """The port that was opened; 0 before `start`."""
-        return self._port
-
-    @property
-    def url(self) -> str:
-        """The page's address for a browser on this machine; with the token, where the server asks for one."""
-        local = any(is_loopback(host) or host in ANY_ADDRESS for host in self._hosts)
-        return self._address("localhost" if local else self._hosts[0])
-
-    @property
-    def remote_url(self) -> str | None:
-        """The page's address for other machines; None where they cannot reach it."""
-        if all(map(is_loopback, self._hosts)):
-            return None
-        host = next(host for host in self._hosts if not is_loopback(host))
-        return self._address(outward_address() if host in ANY_ADDRESS else host)
-
-    @property
-    def asks_for_token(self) -> bool:
-        """Whether clients must send a token."""
-        return self._token is not None
-
-    @property
-    def is_encrypted(self) -> bool:
-        """Whether connections are encrypted."""
-        return self._tls is not None
-
-    def _address(self, host: str) -> str:
-        name = f"[{host}]" if ":" in host else host
-        query = f"?{TOKEN_QUERY}={self._token}" if self._token else ""
-        return f"{'https' if self._tls else 'http'}://{name}:{self._port}/{query}"
 
     @property
     def client_count(self) -> int:
         """How many clients are connected."""
         return len(self._clients)
-
-    def start(self) -> None:
-        """Open the port and serve from a new thread; returns when clients can connect.
-
-        Raises
-        ------
-        PortError
-            When the address cannot be opened, or no port is free.
-        """
-        sockets = open_port(self._hosts, self._wanted_port)
-        self._port = sockets[0].getsockname()[1]
-        ready: Future[None] = Future()
-        self._thread = threading.Thread(target=self._run, args=(sockets, ready), name="studio", daemon=True)
-        self._thread.start()
-        ready.result()
-
-    def stop(self) -> None:
-        """Close the connections and the port, and end the thread; within a second."""
-        thread, self._thread = self._thread, None
-        if thread is not None:
-            self._soon(self._request_stop)
-            thread.join()
 
     def __enter__(self) -> StudioServer:
         self.start()
@@ -226,26 +121,9 @@ class StudioServer:
         """Implement `Observer`."""
         self._soon(lambda: self._send_parameters(parameters))
 
-    def _soon(self, call: Callable[[], object]) -> None:
-        loop = self._loop
-        if loop is not None:
-            with contextlib.suppress(RuntimeError):  # the loop has ended, and every client with it
-                loop.call_soon_threadsafe(call)
-
     # The server's thread ----------------------------------------------------------------------------------
 
-    def _run(self, sockets: list[socket.socket], ready: Future[None]) -> None:
-        try:
-            asyncio.run(self._serve(sockets, ready))
-        except BaseException as error:
-            if ready.done():
-                raise
-            ready.set_exception(error)
-
-    async def _serve(self, sockets: list[socket.socket], ready: Future[None]) -> None:
-        self._loop = asyncio.get_running_loop()
-        self._stopping = asyncio.Event()
-        app = web.Application(middlewares=[self._guard], client_max_size=MAX_FILE_BYTES)
+    def _add_routes(self, app: web.Application) -> None:
         app[STATIC_KEY] = self._static
         app[ARRANGEMENT_KEY] = self._arrangement
         app.router.add_get("/", self._root)
@@ -255,70 +133,15 @@ class StudioServer:
         app.router.add_get("/extensions.json", extensions_of)
         app.router.add_get("/extensions/{kind}/{name}/{path:.*}", extension_module)
         app.router.add_get("/{path:.*}", page)
-        runner = web.AppRunner(
-            app,
-            access_log=None,
-            handle_signals=False,
-            shutdown_timeout=CLOSE_TIMEOUT_S,
-            keepalive_timeout=KEEP_ALIVE_S,
-            logger=_HTTP_LOGGER,
-        )
-        observing = None
-        listeners: list[asyncio.Server] = []
-        sweep = asyncio.create_task(self._connections.sweep())
-        try:
-            await runner.setup()
-            assert runner.server is not None
-            make_protocol = self._connections.wrap(runner.server)
-            timeout = None if self._tls is None else HANDSHAKE_S
-            for opened in sockets:
-                listener = await self._loop.create_server(
-                    make_protocol, sock=opened, backlog=ACCEPTED_AT_ONCE, ssl=self._tls, ssl_handshake_timeout=timeout
-                )
-                opened.listen(BACKLOG)  # those that are not accepted at once wait in the system
-                listeners.append(listener)
-            self._time = self._source.time()
-            observing = self._source.attach(self)
-            self._hub.refresh()
-            ready.set_result(None)
-            await self._stopping.wait()
-        finally:
-            if observing is not None:
-                observing.close()
-            sweep.cancel()
-            for listener in listeners:
-                listener.close()
-            await self._close_connections()
-            await runner.cleanup()
-            self._loop = None
 
-    def _request_stop(self) -> None:
-        if self._stopping is not None:
-            self._stopping.set()
+    def _opened(self) -> None:
+        self._time = self._source.time()
+        self._observing = self._source.attach(self)
+        self._hub.refresh()
 
-    async def _close_connections(self) -> None:
-        closing = [asyncio.create_task(each.close(code=1001)) for each in self._sockets]
-        if closing:
-            _, late = await asyncio.wait(closing, timeout=CLOSE_TIMEOUT_S)
-            for task in late:
-                task.cancel()
-
-    @web.middleware
-    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        connection = self._connections.of(request.protocol)
-        if connection is not None:
-            connection.complete()
-        refusal = too_long(request) or self._access.refusal(identify(request, self._port)) or self._other_user(request)
-        if refusal is not None:
-            return web.Response(status=refusal.status, text=refusal.reason + "\n", headers=HEADERS)
-        return (entrance(request, self._port) if self._token else None) or await handler(request)
-
-    def _other_user(self, request: web.Request) -> Refusal | None:
-        """Return the refusal of a connection by another user of this machine, where no token is asked for."""
-        ends = [request.get_extra_info(name) for name in ("peername", "sockname")]
-        if self._token is not None or None in ends or not is_of_another_user(*ends):
-            return None
-        return Refusal(403, "this server is another user's; it serves others only where it is started with a token")
+    def _closed(self) -> None:
+        if self._observing is not None:
+            self._observing.close()
 
     async def _root(self, request: web.Request) -> web.StreamResponse:
         if "websocket" not in request.headers.get("Upgrade", "").lower():
@@ -330,29 +153,19 @@ class StudioServer:
         if not offered & set(protocol.SUBPROTOCOLS):
             known = " or ".join(protocol.SUBPROTOCOLS)
             return web.Response(status=400, text=f"expected the WebSocket subprotocol {known}\n")
-        connection = web.WebSocketResponse(
-            protocols=protocol.SUBPROTOCOLS,
-            compress=False,  # costs more than loopback and local networks give back
-            heartbeat=30,
-            max_msg_size=MAX_FRAME_BYTES,
-            timeout=CLOSE_TIMEOUT_S,
-        )
-        await connection.prepare(request)
-        link = self._connections.of(request.protocol)
+        connection, link = await self._open_socket(request, protocol.SUBPROTOCOLS)
         if link is None:
-            return connection  # it was lost meanwhile
+            return connection
         client = Client(connection, self._source, self._hub, self._assets, self._connections, link, self._turns)
         for frame in self._first_frames():
             client.outbox.put_reply(frame)
         if self._time is not None:
             client.outbox.put_time(self._time)
         self._clients.add(client)
-        self._sockets.add(connection)
         try:
-            await client.run()
+            await self._run_client(client, connection)
         finally:
             self._clients.discard(client)
-            self._sockets.discard(connection)
         return connection
 
     def _first_frames(self) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,10 @@ from rclpy.impl.entities import ServiceHandle
 from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.service_end import ServiceEnd
 from rclpy.qos import QoSProfile
+
+
+class Unanswered(Exception):
+    """Error of a callback that leaves a request without an answer, as its caller would not get a true one."""
 
 
 class Service(ServiceEnd[ServiceHandle]):
@@ -60,7 +65,8 @@ class Service(ServiceEnd[ServiceHandle]):
         return None
 
     async def _answer_later(self, awaitable: Any, header: Any) -> None:
-        self.send_response(await awaitable, header)
+        with contextlib.suppress(Unanswered):
+            self.send_response(await awaitable, header)
 
 
 if not TYPE_CHECKING:

@@ -1,1 +1,1 @@
-"""Messages as JSON, in the way of rosbridge: `internal.message_conversion` and `internal.ros_loader`."""
+"""Server's side of the rosbridge protocol, version 2: the graph for clients that speak JSON."""

@@ -19,7 +19,7 @@ from rosidl_runtime_py.utilities import get_message, get_service
 
 from daidalos.interfaces.schema import message_schema
 from daidalos.nodes.foxglove_bridge._endpoints import DEPTH, Caller, Closing, Publication, matching_qos
-from daidalos.nodes.foxglove_bridge._graph_parameters import GraphParameters
+from daidalos.nodes.graph_parameters import GraphParameters
 from daidalos.studio.source import (
     Graph,
     MessageCallback,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from rclpy.node import Node
@@ -12,9 +11,10 @@ from rclpy.node import Node
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import UserError
-from daidalos.nodes.studio import Access, Studio, open_in_browser
+from daidalos.nodes.server_access import Access, listening_hosts
+from daidalos.nodes.studio import Studio, open_in_browser
 from daidalos.studio.ports import PortError
-from daidalos.studio.server import DEFAULT_PORT, LOOPBACK
+from daidalos.studio.server import DEFAULT_PORT
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,14 @@ class FoxgloveBridge(Node):
         super().__init__("foxglove_bridge", **kwargs)
         settings = declare(self, FoxgloveBridgeParameters)
         try:
-            hosts = (settings.address,) if settings.address else LOOPBACK
-            self._studio = Studio(self, settings.port, hosts, access=_access(settings))
+            access = Access.of(
+                settings.allowed_hosts,
+                settings.allowed_origins,
+                tls=settings.tls,
+                certfile=settings.certfile,
+                keyfile=settings.keyfile,
+            )
+            self._studio = Studio(self, settings.port, listening_hosts(settings.address), access=access)
         except (PortError, UserError) as error:
             super().destroy_node()
             raise UserError(str(error)) from None
@@ -70,14 +76,3 @@ class FoxgloveBridge(Node):
         """Close the page's connections and leave the graph."""
         self._studio.close()
         super().destroy_node()
-
-
-def _access(settings: FoxgloveBridgeParameters) -> Access:
-    if settings.tls and not settings.certfile:
-        raise UserError("the parameter 'tls' needs 'certfile', a certificate in PEM format")
-    return Access(
-        tuple(filter(None, settings.allowed_hosts)),
-        tuple(filter(None, settings.allowed_origins)),
-        Path(settings.certfile).expanduser() if settings.tls else None,
-        Path(settings.keyfile).expanduser() if settings.tls and settings.keyfile else None,
-    )

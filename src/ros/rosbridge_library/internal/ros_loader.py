@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import functools
 import importlib
+import re
 from typing import Any
+
+from rosidl_runtime_py.get_interfaces import interface_library
 
 
 class InvalidTypeStringException(Exception):
@@ -77,8 +80,22 @@ def get_action_result_instance(typestring: str) -> Any:
     return get_action_class(typestring).Result()
 
 
-@functools.cache
+_loaded_msgs: dict[str, Any] = {}
+_loaded_srvs: dict[str, Any] = {}
+_loaded_actions: dict[str, Any] = {}
+_LOADED = {"msg": _loaded_msgs, "srv": _loaded_srvs, "action": _loaded_actions}
+_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
+_REFUSED_NAMES = 4096
+
+
 def _interface_class(typestring: str, kind: str) -> Any:
+    loaded = _LOADED[kind]
+    if typestring not in loaded:
+        loaded[typestring] = _find(typestring, kind)
+    return loaded[typestring]
+
+
+def _find(typestring: str, kind: str) -> Any:
     parts = [part for part in typestring.split("/") if part]
     if len(parts) not in (2, 3):
         raise InvalidTypeStringException(typestring)
@@ -93,10 +110,20 @@ def _interface_class(typestring: str, kind: str) -> Any:
 
 def _load(package: str, kind: str, name: str) -> Any:
     try:
+        if not _defines(package, kind):  # the name may come from a stranger, and importing a module runs it
+            raise ModuleNotFoundError(f"no package '{package}' with interfaces of kind '{kind}'")
         module = importlib.import_module(f"{package}.{kind}")
-    except Exception as error:  # a name may be anything
+    except Exception as error:
         raise InvalidModuleException(package, kind, error) from error
-    try:
-        return getattr(module, name)
-    except AttributeError as error:
-        raise InvalidClassException(package, kind, name, error) from error
+    found = getattr(module, name, None) if _NAME.fullmatch(name) else None
+    if not isinstance(found, type):
+        raise InvalidClassException(package, kind, name, AttributeError(f"no {kind} '{name}'"))
+    return found
+
+
+@functools.lru_cache(_REFUSED_NAMES)
+def _defines(package: str, kind: str) -> bool:
+    """Return whether a package has interfaces of a kind."""
+    if not _NAME.fullmatch(package) or kind not in _LOADED:
+        return False
+    return any(name.split("/")[1] == kind for name in interface_library().names(package))

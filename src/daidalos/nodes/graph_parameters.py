@@ -1,4 +1,4 @@
-"""The parameters of the graph's nodes for the studio's clients."""
+"""Parameters of the graph's nodes, for clients that are not nodes themselves."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class GraphParameters:
         answer: Future[Sequence[Parameter]] = Future()
         executor = self._node.executor
         if executor is None:
-            answer.set_exception(SourceError("the bridge is not running"))
+            answer.set_exception(SourceError("the node is not spun"))
             return answer
 
         async def gather() -> None:

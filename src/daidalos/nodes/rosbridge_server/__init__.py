@@ -1,0 +1,1 @@
+"""Server of the rosbridge protocol over WebSockets."""

@@ -1,0 +1,164 @@
+"""One connected WebSocket: its requests come in turn, and its frames wait in an outbox."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import Callable, Coroutine
+from typing import Any, cast
+
+from aiohttp import WSMsgType, web
+
+from daidalos.studio.connections import Connection, Connections
+from daidalos.studio.frames import message_frame
+from daidalos.studio.limits import MAX_REASON_BYTES, MAX_TEXT_BYTES, Turn
+from daidalos.studio.outbox import FrameMaker, Outbox, Pieces
+
+_LOGGER = logging.getLogger(__name__)
+
+_CLOSE_TIMEOUT_S = 0.5
+"""Timeout of the closing handshake with a client that is closed for what it did."""
+_POLICY_VIOLATION = 1008
+
+
+class StreamClient:
+    """The server's side of one WebSocket; lives in the server's event loop.
+
+    Subclasses handle the frames, answer errors and release what the client opened.
+
+    Parameters
+    ----------
+    socket
+        The prepared WebSocket.
+    connections, connection, turns
+        The server's connections, the client's own, and the order of the clients' turns.
+    make_frame
+        Makes the frame of a subscription's message.
+    max_text_bytes
+        Bytes of a text frame; a client that sends more is closed.
+    """
+
+    def __init__(
+        self,
+        socket: web.WebSocketResponse,
+        connections: Connections,
+        connection: Connection,
+        turns: asyncio.Lock,
+        make_frame: FrameMaker = message_frame,
+        max_text_bytes: int | None = None,
+    ) -> None:
+        self._max_text_bytes = MAX_TEXT_BYTES if max_text_bytes is None else max_text_bytes
+        self._socket = socket
+        self._connections = connections
+        self._connection = connection
+        self._turn = Turn(turns)
+        self._drained = asyncio.Event()
+        self._closing: asyncio.Task[None] | None = None
+        loop = asyncio.get_running_loop()
+        self._awake = asyncio.Event()
+        self.outbox = Outbox(lambda: _wake(loop, self._awake), make_frame)
+
+    async def run(self) -> None:
+        """Receive and send until the connection ends, a limit is passed or the server stops."""
+        self._connection.complete()
+        self._connection.stream = self
+        sender = asyncio.create_task(self._send())
+        self._connection.want()
+        try:
+            async for message in self._socket:
+                self._connection.complete()
+                async with self._turn:
+                    if message.type is WSMsgType.TEXT:
+                        await self._receive(self._check_text, message.data)
+                    elif message.type is WSMsgType.BINARY:
+                        await self._receive(self._receive_binary, message.data)
+                if self.outbox.overflowed:
+                    self.stop("too many bytes of replies wait to be read")
+                if self._closing is not None:
+                    break
+                self._connection.want()
+        finally:
+            self._connection.stream = None
+            sender.cancel()
+            self._release()
+            with contextlib.suppress(asyncio.CancelledError):
+                await sender
+            if self._closing is not None:
+                await self._closing
+
+    @property
+    def waiting_bytes(self) -> int:
+        """Bytes of replies that wait for the client."""
+        return self.outbox.reply_bytes
+
+    def stop(self, reason: str) -> None:
+        """Close the connection with a reason, for the client's developer and the log."""
+        if self._closing is None:
+            self._connections.note_closed(reason)
+            self._closing = asyncio.create_task(self._close(reason))
+
+    async def _close(self, reason: str) -> None:
+        with contextlib.suppress(TimeoutError, ConnectionError, RuntimeError):
+            async with asyncio.timeout(_CLOSE_TIMEOUT_S):
+                await self._socket.close(
+                    code=_POLICY_VIOLATION, message=reason.encode()[:MAX_REASON_BYTES], drain=False
+                )
+        transport = self._connection.transport
+        if transport is not None:
+            transport.abort()  # what it has not read it will not read
+
+    async def _send(self) -> None:
+        with contextlib.suppress(ConnectionError):  # the receiving side sees the end as well and closes everything
+            while True:
+                frame = self.outbox.take()
+                if frame is None:
+                    self._drained.set()
+                    await self._awake.wait()
+                    self._awake.clear()
+                    continue
+                for one in frame.frames if isinstance(frame, Pieces) else (frame,):
+                    if isinstance(one, str):
+                        await self._socket.send_str(one)
+                    else:
+                        await self._socket.send_bytes(cast(bytes, one))  # it takes a bytearray, too
+                    await self._after_frame()
+
+    async def _check_text(self, data: str) -> None:
+        if len(data) > self._max_text_bytes:
+            self.stop(f"a text frame of {len(data)} characters is longer than {self._max_text_bytes}")
+        else:
+            await self._receive_text(data)
+
+    async def _receive(self, handle: Callable[[Any], Coroutine[Any, Any, None]], data: str | bytes) -> None:
+        try:
+            await handle(data)
+        except Exception as error:  # a fault of ours fails this request, and neither the client nor the server
+            _LOGGER.exception("a client's request failed")
+            self._send_error(f"the request failed: {type(error).__name__}")
+
+    # What subclasses define --------------------------------------------------------------------------------
+
+    async def _receive_text(self, data: str) -> None:
+        """Handle a text frame."""
+        raise NotImplementedError
+
+    async def _receive_binary(self, data: bytes) -> None:
+        """Handle a binary frame."""
+        raise NotImplementedError
+
+    def _send_error(self, text: str) -> None:
+        """Answer the request under way with an error."""
+        raise NotImplementedError
+
+    def _release(self) -> None:
+        """Close what the client opened."""
+        raise NotImplementedError
+
+    async def _after_frame(self) -> None:
+        """Wait between frames, where the client asks for it."""
+
+
+def _wake(loop: asyncio.AbstractEventLoop, awake: asyncio.Event) -> None:
+    with contextlib.suppress(RuntimeError):  # the loop has ended
+        loop.call_soon_threadsafe(awake.set)

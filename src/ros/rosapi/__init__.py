@@ -1,0 +1,1 @@
+"""Questions to the graph, for clients that are not nodes themselves."""

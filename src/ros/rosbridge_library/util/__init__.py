@@ -1,0 +1,3 @@
+"""What the protocol's parts share."""
+
+import json as json
