@@ -225,6 +225,10 @@ class Nodes:
         command = ["ros2", "run", package, executable, *arguments, *(["--ros-args", *ros] if ros else [])]
         return self._start(name or executable, command)
 
+    def command(self, *words: str) -> RunningNode:
+        """Start a command line, such as ``ros2 topic echo /chatter``."""
+        return self._start(" ".join(words), list(words))
+
     def script(self, path: str | Path, *arguments: str) -> RunningNode:
         """Start a Python file."""
         return self._start(Path(path).stem, [sys.executable, str(path), *arguments])

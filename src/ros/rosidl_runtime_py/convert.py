@@ -49,10 +49,16 @@ def _plain(value: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool)
     if isinstance(value, str):
         if no_str:
             return f"<string length: <{len(value)}>>"
-        return f"{value[:limit]}..." if limit is not None and len(value) > limit else value
-    if isinstance(value, (bool, int, float)):
-        return value
+        return f"{value[:limit]}..." if limit is not None and len(value) > limit else str.__str__(value)
+    if isinstance(value, (int, float)):
+        return _plain_number(value)
     return _plain_sequence(value, kind, limit, no_arr, no_str)
+
+
+def _plain_number(value: float) -> float:
+    """Return a number as Python's own, also where a message holds one of NumPy's or of an enumeration."""
+    kind = next(kind for kind in (bool, int, float) if isinstance(value, kind))
+    return kind(value)
 
 
 def _plain_sequence(values: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool) -> Any:
@@ -166,6 +172,8 @@ def _csv(value: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool) -
             return f"<string length: <{len(value)}>>"
         shown = value if limit is None or len(value) <= limit else f"{value[:limit]!s}..."
         return str(shown)
+    if isinstance(value, (int, float)):
+        return str(_plain_number(value))
     if not isinstance(value, (list, tuple, array.array)) and not hasattr(value, "tolist"):
         return str(value)
     inner = _value_type(kind)

@@ -1,16 +1,15 @@
-"""Controllers in the simulator as a course runs them: processes, spawners, verbs of `ros2 control`."""
+"""Controllers in the simulator as a course runs them: programs, spawners, verbs of `ros2 control`."""
 
 import json
 import re
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from end_to_end.processes import ROS2, Command, finished
+from nodes.stepped_terminal import Terminal, Terminals
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.scenario(timeout=300, record=False)]
 
 INERTIA = '<mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>'
 JOINT = """<joint name="{0}"><command_interface name="position"/><state_interface name="position"/>
@@ -51,46 +50,27 @@ GOAL = json.dumps(
 )
 
 
-class Terminal:
-    """Where commands are given, on a domain; each must succeed."""
-
-    def __init__(self, domain: int) -> None:
-        self.domain = domain
-
-    def ros2(self, *words: str) -> str:
-        done = self.tried(*words)
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout
-
-    def spawner(self, *words: str) -> str:
-        done = self.tried("run", "controller_manager", *words)
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout + done.stderr
-
-    def tried(self, *words: str) -> subprocess.CompletedProcess[str]:
-        return finished(*ROS2, *words, domain=self.domain, timeout=60.0)
-
-
 @pytest.fixture
-def terminal(domain: int) -> Terminal:
-    return Terminal(domain)
-
-
-@pytest.fixture
-def simulator(tmp_path: Path, terminal: Terminal) -> Iterator[Command]:
+def simulator(tmp_path: Path, terminal: Terminals) -> Iterator[Terminal]:
     parameters = tmp_path / "controllers.yaml"
     parameters.write_text(PARAMETERS, encoding="utf-8")
     robot = tmp_path / "arm.urdf"
     robot.write_text(ROBOT.replace("{parameters}", str(parameters)), encoding="utf-8")
-    with Command(*ROS2, "run", "gazebo_ros", "gzserver", domain=terminal.domain) as server:
-        server.wait_for_line("simulating an empty world")
+    with terminal("run", "gazebo_ros", "gzserver") as server:
+        server.wait_for("simulating an empty world")
         terminal.ros2("run", "gazebo_ros", "spawn_entity.py", "-entity", "arm", "-file", str(robot))
         yield server
 
 
-def test_an_arm_is_brought_up_moved_and_taken_down(simulator: Command, terminal: Terminal) -> None:
-    assert "Configured and activated arm_controller" in terminal.spawner(
-        "spawner", "joint_state_broadcaster", "arm_controller", "--controller-manager-timeout", "20"
+def test_an_arm_is_brought_up_moved_and_taken_down(simulator: Terminal, terminal: Terminals) -> None:
+    assert "Configured and activated arm_controller" in terminal.ros2(
+        "run",
+        "controller_manager",
+        "spawner",
+        "joint_state_broadcaster",
+        "arm_controller",
+        "--controller-manager-timeout",
+        "20",
     )
     listed = terminal.ros2("control", "list_controllers")
     assert re.search(r"arm_controller +joint_trajectory_controller/JointTrajectoryController +active", listed)
@@ -111,17 +91,16 @@ def test_an_arm_is_brought_up_moved_and_taken_down(simulator: Command, terminal:
     assert "Successfully switched" in terminal.ros2(
         "control", "switch_controllers", "--activate", "arm_controller", "--strict"
     )
-    failed = terminal.tried("control", "unload_controller", "arm_controller")
-    assert failed.returncode != 0
-    assert "controller 'arm_controller' is active; stop it first" in simulator.wait_for_line("stop it first")
-    assert "Unloaded arm_controller" in terminal.spawner("unspawner", "arm_controller")
+    with terminal("control", "unload_controller", "arm_controller") as failed:
+        assert failed.wait() != 0
+    simulator.wait_for("controller 'arm_controller' is active; stop it first")
+    assert "Unloaded arm_controller" in terminal.ros2("run", "controller_manager", "unspawner", "arm_controller")
     assert "arm_controller" not in terminal.ros2("control", "list_controllers")
     assert simulator.interrupt() == 0
-    simulator.assert_no_traceback()
 
 
-def test_a_reset_leaves_controllers_active(simulator: Command, terminal: Terminal) -> None:
-    terminal.spawner("spawner", "joint_state_broadcaster", "arm_controller")
+def test_a_reset_leaves_controllers_active(simulator: Terminal, terminal: Terminals) -> None:
+    terminal.ros2("run", "controller_manager", "spawner", "joint_state_broadcaster", "arm_controller")
     terminal.ros2("service", "call", "/reset_simulation", "std_srvs/srv/Empty")
     stamp = terminal.ros2("topic", "echo", "--once", "--field", "header.stamp.sec", "/joint_states")
     assert int(stamp.split()[0]) < 20
@@ -131,15 +110,15 @@ def test_a_reset_leaves_controllers_active(simulator: Command, terminal: Termina
     terminal.ros2("service", "call", "/delete_entity", "gazebo_msgs/srv/DeleteEntity", "{name: arm}")
     assert "/controller_manager" not in terminal.ros2("node", "list")
     assert simulator.interrupt() == 0
-    simulator.assert_no_traceback()
 
 
-def test_spawners_work_while_time_stands_still(simulator: Command, terminal: Terminal) -> None:
+def test_spawners_work_while_time_stands_still(simulator: Terminal, terminal: Terminals) -> None:
     terminal.ros2("service", "call", "/pause_physics", "std_srvs/srv/Empty")
-    assert "Configured and activated joint_state_broadcaster" in terminal.spawner("spawner", "joint_state_broadcaster")
-    missing = terminal.tried("run", "controller_manager", "spawner", "nobody")
-    assert missing.returncode == 2
-    assert "error: loading controller 'nobody' failed; see the controller manager's log" in missing.stderr
-    simulator.wait_for_line("the type of controller 'nobody' is not known")
+    assert "Configured and activated joint_state_broadcaster" in terminal.ros2(
+        "run", "controller_manager", "spawner", "joint_state_broadcaster"
+    )
+    with terminal("run", "controller_manager", "spawner", "nobody") as missing:
+        assert missing.wait() == 2
+        assert "error: loading controller 'nobody' failed; see the controller manager's log" in missing.text
+    simulator.wait_for("the type of controller 'nobody' is not known")
     assert simulator.interrupt() == 0
-    simulator.assert_no_traceback()

@@ -1,0 +1,25 @@
+"""Messages as text."""
+
+from enum import IntEnum, StrEnum
+
+import numpy as np
+import pytest
+from rosidl_runtime_py.convert import message_to_csv, message_to_yaml
+from std_msgs.msg import Float64, Int32, String
+
+
+class Number(IntEnum):
+    ONE = 1
+
+
+class Name(StrEnum):
+    ONE = "one"
+
+
+@pytest.mark.parametrize(
+    ("message", "text"),
+    [(Float64(data=np.float64(2.5)), "2.5"), (Int32(data=Number.ONE), "1"), (String(data=Name.ONE), "one")],
+)
+def test_values_of_other_classes_are_shown_as_what_they_stand_for(message: object, text: str) -> None:
+    assert message_to_yaml(message) == f"data: {text}\n"
+    assert message_to_csv(message) == text
