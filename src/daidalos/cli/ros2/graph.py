@@ -6,49 +6,23 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable
 
-from ros2cli.graph import NamesAndTypes, visible
+from ros2cli.graph import NamesAndTypes
+from ros2cli.listing import SERVICE_KINDS as SERVICE_KINDS
+from ros2cli.listing import TOPIC_KINDS as TOPIC_KINDS
+from ros2cli.listing import action_parties as action_parties
+from ros2cli.listing import actions as actions
+from ros2cli.listing import all_actions as all_actions
+from ros2cli.listing import services as services
+from ros2cli.listing import topics as topics
 
 from daidalos.cli.ros2.errors import CliError
 from daidalos.common.suggestions import near
-from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
+from daidalos.transport.graph import Graph, NodeInfo
 
 START_S = 10.0
 """How long a node that was just started may take to be in the graph [s]."""
 
 MISSPELT_S = 1.0
-TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
-SERVICE_KINDS = (EndpointKind.SERVICE, EndpointKind.CLIENT)
-_FEEDBACK = "/_action/feedback"
-_FEEDBACK_TYPE = "_FeedbackMessage"
-
-
-def topics(graph: Graph, include_hidden: bool = True) -> NamesAndTypes:
-    """Return the topics: [(name, [types])]."""
-    return visible(names_and_types(graph.endpoints(*TOPIC_KINDS)), include_hidden)
-
-
-def services(graph: Graph, include_hidden: bool = True) -> NamesAndTypes:
-    """Return the services: [(name, [types])]."""
-    return visible(names_and_types(graph.endpoints(*SERVICE_KINDS)), include_hidden)
-
-
-def actions(endpoints: Iterable[EndpointInfo]) -> NamesAndTypes:
-    """Return the actions of the feedback topics among endpoints: [(name, [types])]."""
-    feedback = [one for one in endpoints if one.name.endswith(_FEEDBACK) and one.type_name.endswith(_FEEDBACK_TYPE)]
-    return [
-        (name.removesuffix(_FEEDBACK), [one.removesuffix(_FEEDBACK_TYPE) for one in types])
-        for name, types in names_and_types(feedback)
-    ]
-
-
-def all_actions(graph: Graph) -> NamesAndTypes:
-    """Return every action: [(name, [types])]."""
-    return actions(graph.endpoints(*TOPIC_KINDS))
-
-
-def action_parties(graph: Graph, action: str, kind: EndpointKind) -> list[EndpointInfo]:
-    """Return the endpoints that serve (kind PUBLISHER) or call (kind SUBSCRIPTION) an action."""
-    return graph.endpoints(kind, name=f"{action}{_FEEDBACK}")
 
 
 def nodes(graph: Graph, include_hidden: bool = True) -> list[NodeInfo]:

@@ -1,6 +1,6 @@
-"""Checks and reports that other packages add to `ros2 doctor`.
+"""Checks and reports of `ros2 doctor`.
 
-They are entry points of the groups ``ros2doctor.checks`` and ``ros2doctor.report``.
+They are entry points of the groups ``ros2doctor.checks`` and ``ros2doctor.report``, as are the built-in ones.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from ros2doctor.api.format import doctor_warn
 
 _CHECKS = "ros2doctor.checks"
 _REPORTS = "ros2doctor.report"
+_ABOUT_PACKAGES = {"PackageCheck", "PackageReport"}
 
 
 class DoctorCheck:
@@ -77,7 +78,9 @@ class Result:
         self.warning += 1
 
 
-def run_checks(*, include_warnings: bool = False, exclude_packages: bool = False) -> tuple[set[str], int, int]:
+def run_checks(
+    *, include_warnings: bool = False, exclude_packages: bool | Collection[str] = False
+) -> tuple[set[str], int, int]:
     """Run the checks of all packages.
 
     Parameters
@@ -85,7 +88,7 @@ def run_checks(*, include_warnings: bool = False, exclude_packages: bool = False
     include_warnings
         Whether a warning makes a check fail.
     exclude_packages
-        Whether to leave out the check of package versions.
+        Whether to leave out the check of package versions, or the packages that it leaves out.
 
     Returns
     -------
@@ -94,7 +97,7 @@ def run_checks(*, include_warnings: bool = False, exclude_packages: bool = False
     """
     failed: set[str] = set()
     fails = total = 0
-    for check in _instances(_CHECKS, {"PackageCheck"} if exclude_packages else set()):
+    for check in _instances(_CHECKS, exclude_packages):
         try:
             category, result = check.category(), check.check()
         except Exception as error:  # code of other packages may raise anything
@@ -107,7 +110,9 @@ def run_checks(*, include_warnings: bool = False, exclude_packages: bool = False
     return failed, fails, total
 
 
-def generate_reports(*, categories: Collection[str] | None = None, exclude_packages: bool = False) -> list[Report]:
+def generate_reports(
+    *, categories: Collection[str] | None = None, exclude_packages: bool | Collection[str] = False
+) -> list[Report]:
     """Return the reports of all packages.
 
     Parameters
@@ -115,10 +120,10 @@ def generate_reports(*, categories: Collection[str] | None = None, exclude_packa
     categories
         Those to return; all where None or empty.
     exclude_packages
-        Whether to leave out the report of package versions.
+        Whether to leave out the report of package versions, or the packages that it leaves out.
     """
     reports = []
-    for report in _instances(_REPORTS, {"PackageReport"} if exclude_packages else set()):
+    for report in _instances(_REPORTS, exclude_packages):
         try:
             if not categories or report.category() in categories:
                 reports.append(report.report())
@@ -135,11 +140,16 @@ def get_topic_names(skip_topics: Collection[str] = ()) -> list[str]:
         return [name for name, _ in node.get_topic_names_and_types() if name not in skip_topics]
 
 
-def _instances(group: str, excluded: Collection[str]) -> Iterator[Any]:
+def _instances(group: str, exclude_packages: bool | Collection[str]) -> Iterator[Any]:
     for point in importlib.metadata.entry_points(group=group):
-        if point.name in excluded:
+        about_packages = point.name in _ABOUT_PACKAGES
+        if about_packages and exclude_packages is True:
             continue
         try:
-            yield point.load()()
+            one = point.load()()
         except Exception as error:  # code of other packages may raise anything
             doctor_warn(f"{point.name} of {group} cannot be loaded: {error}")
+            continue
+        if about_packages and not isinstance(exclude_packages, bool):
+            one.excluded = exclude_packages
+        yield one

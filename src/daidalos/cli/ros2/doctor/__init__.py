@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import ArgumentParser, Namespace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from ros2cli.node.direct import direct_node
 
 from daidalos.cli.ros2.completion import complete_packages
 from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.verbs import VerbCommand
-
-if TYPE_CHECKING:
-    from daidalos.cli.ros2.checkup.subject import Findings, Subject
-    from daidalos.transport.graph import Graph
 
 
 class DoctorCommand(VerbCommand):
@@ -32,9 +27,8 @@ class DoctorCommand(VerbCommand):
             parser.add_argument(
                 "--exclude-packages",
                 "-ep",
-                nargs="+",
-                default=[],
-                help="Exclude packages from package checks or report.",
+                nargs="*",
+                help="Exclude packages from package checks or report: those named, or all.",
             )
         )
         parser.add_argument(
@@ -46,46 +40,23 @@ class DoctorCommand(VerbCommand):
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
         """Run the checks, or print the reports."""
-        from daidalos.cli.ros2.checkup import subjects
-        from daidalos.cli.ros2.checkup.package import Package
+        from ros2doctor.api import generate_reports, run_checks
+        from ros2doctor.api.format import format_print
+        from ros2doctor.api.graph import shared_graph
 
-        everything = subjects()
-        for subject in everything:
-            if isinstance(subject, Package):
-                subject.excluded = frozenset(args.exclude_packages)
-        with direct_node(args) as node:
-            graph = node.handle.graph
+        excluded = False if args.exclude_packages is None else args.exclude_packages or True
+        with direct_node(args) as node, shared_graph(node.handle.graph):
             if args.report:
-                _print_reports(everything, graph)
+                for report in generate_reports(exclude_packages=excluded):
+                    format_print(report)
                 return 0
-            failed = _check(everything, graph, args.include_warnings)
-            if args.report_failed:
-                _print_reports(failed, graph)
+            failed, fails, total = run_checks(include_warnings=args.include_warnings, exclude_packages=excluded)
+            if fails:
+                print(f"\n{fails}/{total} check(s) failed\n")
+                print("Failed modules:", *sorted(failed))
+            else:
+                print(f"\nAll {total} checks passed\n")
+            if args.report_failed and fails:
+                for report in generate_reports(categories=failed, exclude_packages=excluded):
+                    format_print(report)
         return 0
-
-
-def _check(everything: list[Subject], graph: Graph, include_warnings: bool) -> list[Subject]:
-    """Run the checks and print what they find; return those that failed."""
-    checked = [subject for subject in everything if subject.checked]
-    failed = [subject for subject in checked if _fails(subject.check(graph), include_warnings)]
-    if failed:
-        print(f"\n{len(failed)}/{len(checked)} check(s) failed\n")
-        print("Failed modules:", *(subject.category for subject in failed))
-    else:
-        print(f"\nAll {len(checked)} checks passed\n")
-    return failed
-
-
-def _fails(findings: Findings, include_warnings: bool) -> bool:
-    """Print the findings of a check; return whether it failed."""
-    for text in findings.errors:
-        print(f"UserWarning: ERROR: {text}", file=sys.stderr)
-    for text in findings.warnings:
-        print(f"UserWarning: {text}", file=sys.stderr)
-    return bool(findings.errors or (include_warnings and findings.warnings))
-
-
-def _print_reports(subjects: list[Subject], graph: Graph) -> None:
-    for subject in subjects:
-        for report in subject.reports(graph):
-            print(report)

@@ -3,37 +3,51 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import psutil
 
-from daidalos.cli.ros2.checkup.subject import Findings, Report, Subject
 from daidalos.transport.environment import DiscoveryRange, read_environment
-from daidalos.transport.graph import Graph
+from ros2doctor.api import DoctorCheck, DoctorReport, Report, Result
+from ros2doctor.api.format import doctor_error, doctor_warn
 
 
-class Network(Subject):
-    """Network interfaces, and the discovery range of nodes."""
+class NetworkCheck(DoctorCheck):
+    """Check that fails without an interface, and warns where machines to be discovered cannot be reached."""
 
-    category = "network"
+    def category(self) -> str:
+        """Implement `DoctorCheck`."""
+        return "network"
 
-    def check(self, graph: Graph) -> Findings:
-        """Fail without an active interface; warn if other machines are to be discovered but cannot be reached."""
+    def check(self) -> Result:
+        """Implement `DoctorCheck`."""
+        result = Result()
         up = [name for name, stats in psutil.net_if_stats().items() if stats.isup]
-        if not up:
-            return Findings(errors=["No network interface is up: not even processes of this machine find each other."])
         wide = read_environment().discovery is DiscoveryRange.SUBNET
-        if wide and all(_is_loopback(name) for name in up):
-            return Findings(warnings=["Only loopback interfaces are up: nodes on other machines cannot be found."])
-        return Findings()
+        if not up:
+            doctor_error("No network interface is up: not even processes of this machine find each other.")
+            result.add_error()
+        elif wide and all(_is_loopback(name) for name in up):
+            doctor_warn("Only loopback interfaces are up: nodes on other machines cannot be found.")
+            result.add_warning()
+        return result
 
-    def reports(self, graph: Graph) -> Iterable[Report]:
-        """Return a description of every interface."""
-        items: list[tuple[str, Any]] = []
+
+class NetworkReport(DoctorReport):
+    """Report of the interfaces."""
+
+    def category(self) -> str:
+        """Implement `DoctorReport`."""
+        return "network"
+
+    def report(self) -> Report:
+        """Implement `DoctorReport`."""
+        report = Report("NETWORK CONFIGURATION")
         for name, addresses in psutil.net_if_addrs().items():
-            items += _interface(name, addresses)
-        yield Report("NETWORK CONFIGURATION", tuple(items))
+            for item in _interface(name, addresses):
+                report.add_to_report(*item)
+        return report
 
 
 def _is_loopback(name: str) -> bool:
@@ -60,6 +74,3 @@ def _interface(name: str, addresses: list[Any]) -> Iterator[tuple[str, Any]]:
         yield "mtu", stats.mtu
     if four and four[0].broadcast:
         yield "broadcast", four[0].broadcast
-
-
-SUBJECT = Network
