@@ -8,373 +8,141 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-PACKAGE_NAME_MESSAGE_TYPE_SEPARATOR = "/"
-COMMENT_DELIMITER = "#"
-CONSTANT_SEPARATOR = "="
-ARRAY_UPPER_BOUND_TOKEN = "<="
-STRING_UPPER_BOUND_TOKEN = "<="
-SERVICE_REQUEST_RESPONSE_SEPARATOR = "---"
-SERVICE_REQUEST_MESSAGE_SUFFIX = "_Request"
-SERVICE_RESPONSE_MESSAGE_SUFFIX = "_Response"
-SERVICE_EVENT_MESSAGE_SUFFIX = "_Event"
-ACTION_REQUEST_RESPONSE_SEPARATOR = "---"
-ACTION_GOAL_SUFFIX = "_Goal"
-ACTION_RESULT_SUFFIX = "_Result"
-ACTION_FEEDBACK_SUFFIX = "_Feedback"
-ACTION_GOAL_SERVICE_SUFFIX = "_Goal"
-ACTION_RESULT_SERVICE_SUFFIX = "_Result"
-ACTION_FEEDBACK_MESSAGE_SUFFIX = "_Feedback"
-PRIMITIVE_TYPES = [
-    "bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
-    "uint64", "string", "wstring", "duration", "time",
-]  # fmt: skip
-"""Names of types without a package; `duration` and `time` are of ROS 1."""
-
-VALID_PACKAGE_NAME_PATTERN = re.compile(r"^(?!.*__)(?!.*_$)[a-z][a-z0-9_]*$")
-VALID_FIELD_NAME_PATTERN = VALID_PACKAGE_NAME_PATTERN
-VALID_MESSAGE_NAME_PATTERN = re.compile(r"^[A-Z][A-Za-z0-9]*$")
-VALID_CONSTANT_NAME_PATTERN = re.compile(r"^[A-Z]([A-Z0-9_]?[A-Z0-9]+)*$")
-
-_DERIVED = (
-    SERVICE_REQUEST_MESSAGE_SUFFIX,
-    SERVICE_RESPONSE_MESSAGE_SUFFIX,
-    ACTION_GOAL_SERVICE_SUFFIX,
-    ACTION_RESULT_SERVICE_SUFFIX,
-    ACTION_FEEDBACK_MESSAGE_SUFFIX,
+from ._errors import (
+    InvalidActionSpecification as InvalidActionSpecification,
 )
+from ._errors import (
+    InvalidFieldDefinition as InvalidFieldDefinition,
+)
+from ._errors import (
+    InvalidResourceName as InvalidResourceName,
+)
+from ._errors import (
+    InvalidServiceSpecification as InvalidServiceSpecification,
+)
+from ._errors import (
+    InvalidSpecification as InvalidSpecification,
+)
+from ._errors import (
+    InvalidValue as InvalidValue,
+)
+from ._errors import (
+    UnknownMessageType as UnknownMessageType,
+)
+from ._specifications import (
+    ActionSpecification as ActionSpecification,
+)
+from ._specifications import (
+    Constant as Constant,
+)
+from ._specifications import (
+    Field as Field,
+)
+from ._specifications import (
+    MessageSpecification as MessageSpecification,
+)
+from ._specifications import (
+    ServiceSpecification as ServiceSpecification,
+)
+from ._specifications import (
+    validate_field_types as validate_field_types,
+)
+from ._types import (
+    ACTION_FEEDBACK_MESSAGE_SUFFIX as ACTION_FEEDBACK_MESSAGE_SUFFIX,
+)
+from ._types import (
+    ACTION_FEEDBACK_SUFFIX as ACTION_FEEDBACK_SUFFIX,
+)
+from ._types import (
+    ACTION_GOAL_SERVICE_SUFFIX as ACTION_GOAL_SERVICE_SUFFIX,
+)
+from ._types import (
+    ACTION_GOAL_SUFFIX as ACTION_GOAL_SUFFIX,
+)
+from ._types import (
+    ACTION_REQUEST_RESPONSE_SEPARATOR as ACTION_REQUEST_RESPONSE_SEPARATOR,
+)
+from ._types import (
+    ACTION_RESULT_SERVICE_SUFFIX as ACTION_RESULT_SERVICE_SUFFIX,
+)
+from ._types import (
+    ACTION_RESULT_SUFFIX as ACTION_RESULT_SUFFIX,
+)
+from ._types import (
+    ARRAY_UPPER_BOUND_TOKEN as ARRAY_UPPER_BOUND_TOKEN,
+)
+from ._types import (
+    COMMENT_DELIMITER as COMMENT_DELIMITER,
+)
+from ._types import (
+    CONSTANT_SEPARATOR as CONSTANT_SEPARATOR,
+)
+from ._types import (
+    PACKAGE_NAME_MESSAGE_TYPE_SEPARATOR as PACKAGE_NAME_MESSAGE_TYPE_SEPARATOR,
+)
+from ._types import (
+    PRIMITIVE_TYPES as PRIMITIVE_TYPES,
+)
+from ._types import (
+    SERVICE_EVENT_MESSAGE_SUFFIX as SERVICE_EVENT_MESSAGE_SUFFIX,
+)
+from ._types import (
+    SERVICE_REQUEST_MESSAGE_SUFFIX as SERVICE_REQUEST_MESSAGE_SUFFIX,
+)
+from ._types import (
+    SERVICE_REQUEST_RESPONSE_SEPARATOR as SERVICE_REQUEST_RESPONSE_SEPARATOR,
+)
+from ._types import (
+    SERVICE_RESPONSE_MESSAGE_SUFFIX as SERVICE_RESPONSE_MESSAGE_SUFFIX,
+)
+from ._types import (
+    STRING_UPPER_BOUND_TOKEN as STRING_UPPER_BOUND_TOKEN,
+)
+from ._types import (
+    VALID_CONSTANT_NAME_PATTERN as VALID_CONSTANT_NAME_PATTERN,
+)
+from ._types import (
+    VALID_FIELD_NAME_PATTERN as VALID_FIELD_NAME_PATTERN,
+)
+from ._types import (
+    VALID_MESSAGE_NAME_PATTERN as VALID_MESSAGE_NAME_PATTERN,
+)
+from ._types import (
+    VALID_PACKAGE_NAME_PATTERN as VALID_PACKAGE_NAME_PATTERN,
+)
+from ._types import (
+    BaseType as BaseType,
+)
+from ._types import (
+    Type as Type,
+)
+from ._types import (
+    is_valid_constant_name as is_valid_constant_name,
+)
+from ._types import (
+    is_valid_field_name as is_valid_field_name,
+)
+from ._types import (
+    is_valid_message_name as is_valid_message_name,
+)
+from ._types import (
+    is_valid_package_name as is_valid_package_name,
+)
+from ._values import (
+    parse_primitive_value_string as parse_primitive_value_string,
+)
+from ._values import (
+    parse_string_array_value_string as parse_string_array_value_string,
+)
+from ._values import (
+    parse_value_string as parse_value_string,
+)
+
 _UNIT = re.compile(r"(\s*\[([^,\]]+)\])")
-
-
-class InvalidSpecification(Exception):
-    """Error of a definition."""
-
-
-class InvalidActionSpecification(InvalidSpecification):
-    """Error of an action without the three parts."""
-
-
-class InvalidServiceSpecification(InvalidSpecification):
-    """Error of a service without the two parts."""
-
-
-class InvalidResourceName(InvalidSpecification):
-    """Error of a name of a package or a message."""
-
-
-class InvalidFieldDefinition(InvalidSpecification):
-    """Error of a line that is neither a field nor a constant."""
-
-
-class UnknownMessageType(InvalidSpecification):
-    """Error of a field whose type is not known."""
-
-
-class InvalidValue(Exception):
-    """Error of a value that is not one of its type.
-
-    Parameters
-    ----------
-    type_
-        The type.
-    value_string
-        The value as text.
-    message_suffix
-        What is expected.
-    """
-
-    def __init__(self, type_: Type | str, value_string: str, message_suffix: str | None = None) -> None:
-        reason = f": {message_suffix}" if message_suffix is not None else ""
-        super().__init__(f"value '{value_string}' can not be converted to type '{type_}'{reason}")
-
-
-def is_valid_package_name(name: str) -> bool:
-    """Return whether a name can be one of a package; raises InvalidResourceName for what is not text."""
-    return _fits(VALID_PACKAGE_NAME_PATTERN, name)
-
-
-def is_valid_field_name(name: str) -> bool:
-    """Return whether a name can be one of a field; raises InvalidResourceName for what is not text."""
-    return _fits(VALID_FIELD_NAME_PATTERN, name)
-
-
-def is_valid_message_name(name: str) -> bool:
-    """Return whether a name can be one of a message; raises InvalidResourceName for what is not text."""
-    if not isinstance(name, str):
-        raise InvalidResourceName(name)
-    name = name.removeprefix("Sample_")
-    for suffix in _DERIVED:
-        name = name.removesuffix(suffix)
-    return _fits(VALID_MESSAGE_NAME_PATTERN, name)
-
-
-def is_valid_constant_name(name: str) -> bool:
-    """Return whether a name can be one of a constant; raises InvalidResourceName for what is not text."""
-    return _fits(VALID_CONSTANT_NAME_PATTERN, name)
-
-
-def _fits(pattern: re.Pattern[str], name: Any) -> bool:
-    if not isinstance(name, str):
-        raise InvalidResourceName(name)
-    return pattern.fullmatch(name) is not None
-
-
-class BaseType:
-    """Type of one value.
-
-    Parameters
-    ----------
-    type_string
-        Such as ``float64``, ``string<=5`` or ``geometry_msgs/Point``.
-    context_package_name
-        Package of types that name none.
-    """
-
-    __slots__ = ("pkg_name", "string_upper_bound", "type")
-
-    def __init__(self, type_string: str, context_package_name: str | None = None) -> None:
-        self.pkg_name: str | None = None
-        self.type = type_string
-        self.string_upper_bound: int | None = None
-        if type_string in PRIMITIVE_TYPES:
-            return
-        name, separator, bound = type_string.partition(STRING_UPPER_BOUND_TOKEN)
-        if separator and name in ("string", "wstring"):
-            self.type = name
-            self.string_upper_bound = _positive(bound, f"the upper bound of the string type '{type_string}'")
-            return
-        parts = type_string.split(PACKAGE_NAME_MESSAGE_TYPE_SEPARATOR)
-        if len(parts) == 1 and context_package_name is not None:
-            parts = [context_package_name, type_string]
-        if len(parts) != 2:
-            raise InvalidResourceName(type_string)
-        self.pkg_name, self.type = parts
-        for what, good, pattern in (
-            (self.pkg_name, is_valid_package_name(self.pkg_name), VALID_PACKAGE_NAME_PATTERN),
-            (self.type, is_valid_message_name(self.type), VALID_MESSAGE_NAME_PATTERN),
-        ):
-            if not good:
-                raise InvalidResourceName(
-                    f"'{what}' is an invalid name. It should have the pattern '{pattern.pattern}'"
-                )
-
-    def is_primitive_type(self) -> bool:
-        """Return whether the type has no package."""
-        return self.pkg_name is None
-
-    def _key(self) -> tuple[Any, ...]:
-        return self.pkg_name, self.type, self.string_upper_bound
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, BaseType) and type(self) is type(other) and self._key() == other._key()
-
-    def __hash__(self) -> int:
-        return hash(str(self))
-
-    def __str__(self) -> str:
-        if self.pkg_name is not None:
-            return f"{self.pkg_name}/{self.type}"
-        bound = self.string_upper_bound
-        return f"{self.type}{STRING_UPPER_BOUND_TOKEN}{bound}" if bound else self.type
-
-
-def _positive(text: str, what: str) -> int:
-    if not text.strip().isdigit() or int(text) == 0:
-        raise TypeError(f"{what} must be a valid integer value > 0")
-    return int(text)
-
-
-class Type(BaseType):
-    """Type of a field: one value, or an array such as ``float64[3]``, ``float64[<=3]`` or ``float64[]``.
-
-    Parameters
-    ----------
-    type_string, context_package_name
-        See `BaseType`.
-    """
-
-    __slots__ = ("array_size", "is_array", "is_upper_bound")
-
-    def __init__(self, type_string: str, context_package_name: str | None = None) -> None:
-        self.is_array = type_string.endswith("]")
-        self.array_size: int | None = None
-        self.is_upper_bound = False
-        if self.is_array:
-            if "[" not in type_string:
-                raise TypeError(f"the type {type_string} ends with ']' but does not contain a '['")
-            whole, (type_string, _, size) = type_string, type_string[:-1].rpartition("[")
-            self.is_upper_bound = size.startswith(ARRAY_UPPER_BOUND_TOKEN)
-            if size:
-                size = size.removeprefix(ARRAY_UPPER_BOUND_TOKEN)
-                self.array_size = _positive(size, f"the size of array type '{whole}'")
-        super().__init__(type_string, context_package_name)
-
-    def is_dynamic_array(self) -> bool:
-        """Return whether it is an array whose size may differ."""
-        return self.is_array and (not self.array_size or self.is_upper_bound)
-
-    def is_fixed_size_array(self) -> bool:
-        """Return whether it is an array of one size."""
-        return self.is_array and bool(self.array_size) and not self.is_upper_bound
-
-    def _key(self) -> tuple[Any, ...]:
-        return *super()._key(), self.is_array, self.array_size, self.is_upper_bound
-
-    def __eq__(self, other: object) -> bool:
-        return super().__eq__(other)
-
-    def __hash__(self) -> int:
-        return hash(str(self))
-
-    def __str__(self) -> str:
-        bound = ARRAY_UPPER_BOUND_TOKEN if self.is_upper_bound else ""
-        return super().__str__() + (f"[{bound}{self.array_size or ''}]" if self.is_array else "")
-
-
-class Constant:
-    """Named value.
-
-    Parameters
-    ----------
-    primitive_type, name, value_string
-        Its type without a package, its name and its value as text.
-    """
-
-    __slots__ = ("annotations", "name", "type", "value")
-
-    def __init__(self, primitive_type: str, name: str, value_string: str) -> None:
-        if primitive_type not in PRIMITIVE_TYPES:
-            raise TypeError(f"the constant type '{primitive_type}' must be a primitive type")
-        _check_name(name, is_valid_constant_name(name), "constant", VALID_CONSTANT_NAME_PATTERN)
-        if value_string is None:
-            raise ValueError("the constant value must not be 'None'")
-        self.type = primitive_type
-        self.name = name
-        self.value = parse_primitive_value_string(Type(primitive_type), value_string)
-        self.annotations: dict[str, Any] = {}
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Constant) and str(self) == str(other)
-
-    __hash__ = None  # type: ignore[assignment]  # it can change
-
-    def __str__(self) -> str:
-        value = f"'{self.value}'" if self.type in ("string", "wstring") else self.value
-        return f"{self.type} {self.name}={value}"
-
-
-def _check_name(name: str, good: bool, what: str, pattern: re.Pattern[str]) -> None:
-    if not good:
-        raise NameError(f"'{name}' is an invalid {what} name. It should have the pattern '{pattern.pattern}'")
-
-
-class Field:
-    """Field of a message.
-
-    Parameters
-    ----------
-    type_, name, default_value_string
-        Its type, its name and its default value as text.
-    """
-
-    def __init__(self, type_: Type, name: str, default_value_string: str | None = None) -> None:
-        if not isinstance(type_, Type):
-            raise TypeError(f"the field type '{type_}' must be a 'Type' instance")
-        _check_name(name, is_valid_field_name(name), "field", VALID_FIELD_NAME_PATTERN)
-        self.type = type_
-        self.name = name
-        self.default_value = None if default_value_string is None else parse_value_string(type_, default_value_string)
-        self.annotations: dict[str, Any] = {}
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Field) and (self.type, self.name, self.default_value) == (
-            other.type,
-            other.name,
-            other.default_value,
-        )
-
-    __hash__ = None  # type: ignore[assignment]  # it can change
-
-    def __str__(self) -> str:
-        if self.default_value is None:
-            return f"{self.type} {self.name}"
-        is_text = self.type.type in ("string", "wstring") and not self.type.is_array
-        return f"{self.type} {self.name} {repr(self.default_value) if is_text else self.default_value}"
-
-
-class MessageSpecification:
-    """Message: its name, fields and constants.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For items that are none, and for names that occur twice.
-    """
-
-    def __init__(self, pkg_name: str, msg_name: str, fields: Iterable[Field], constants: Iterable[Constant]) -> None:
-        self.base_type = BaseType(f"{pkg_name}{PACKAGE_NAME_MESSAGE_TYPE_SEPARATOR}{msg_name}")
-        self.msg_name = msg_name
-        self.annotations: dict[str, Any] = {}
-        self.fields: list[Field] = _unique("field", fields, Field)
-        self.constants: list[Constant] = _unique("constant", constants, Constant)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, MessageSpecification) and (
-            (self.base_type, self.fields, self.constants) == (other.base_type, other.fields, other.constants)
-        )
-
-    __hash__ = None  # type: ignore[assignment]  # it can change
-
-    def __str__(self) -> str:
-        return "\n".join((f"# {self.base_type}", *map(str, self.constants), *map(str, self.fields)))
-
-
-def _unique(what: str, items: Iterable[Any], kind: type) -> list[Any]:
-    found = list(items)
-    for index, item in enumerate(found):
-        if not isinstance(item, kind):
-            raise TypeError(f"{what} {index} must be a '{kind.__name__}' instance")
-    names = [item.name for item in found]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise ValueError(f"the {what}s iterable contains duplicate names: {', '.join(twice)}")
-    return found
-
-
-class ServiceSpecification:
-    """Service: its name, request and response."""
-
-    def __init__(
-        self, pkg_name: str, srv_name: str, request: MessageSpecification, response: MessageSpecification
-    ) -> None:
-        self.pkg_name = pkg_name
-        self.srv_name = srv_name
-        self.request = request
-        self.response = response
-
-    def __str__(self) -> str:
-        return f"# {self.pkg_name}/{self.srv_name}\n{self.request}\n---\n{self.response}"
-
-
-class ActionSpecification:
-    """Action: its name, goal, result and feedback."""
-
-    def __init__(
-        self,
-        pkg_name: str,
-        action_name: str,
-        goal: MessageSpecification,
-        result: MessageSpecification,
-        feedback: MessageSpecification,
-    ) -> None:
-        self.pkg_name = pkg_name
-        self.action_name = action_name
-        self.goal = goal
-        self.result = result
-        self.feedback = feedback
 
 
 def parse_message_file(pkg_name: str, interface_filename: str) -> MessageSpecification:
@@ -495,120 +263,3 @@ def process_comments(instance: MessageSpecification | Field | Constant) -> None:
         lines = [line.replace(units[0][0], "") for line in lines]
     text = re.sub(r"\n{3,}", "\n\n", "\n".join(lines).strip("\n"))
     instance.annotations["comment"] = textwrap.dedent(text).split("\n") if text else []
-
-
-def parse_value_string(type_: Type, value_string: str) -> Any:
-    """Return the value of a text: of a type without a package, or an array of such values."""
-    if not type_.is_primitive_type():
-        raise NotImplementedError(f"parsing string values into type '{type_}' is not supported")
-    if not type_.is_array:
-        return parse_primitive_value_string(type_, value_string)
-    if not (value_string.startswith("[") and value_string.endswith("]")):
-        raise InvalidValue(type_, value_string, "array value must start with '[' and end with ']'")
-    inner = value_string[1:-1]
-    if type_.type in ("string", "wstring"):
-        items = parse_string_array_value_string(inner, type_.array_size)
-    else:
-        items = inner.split(",") if inner else []
-    size = type_.array_size
-    if size and (len(items) > size if type_.is_upper_bound else len(items) != size):
-        which = "not more than" if type_.is_upper_bound else "exactly"
-        raise InvalidValue(type_, value_string, f"array must have {which} {size} elements, not {len(items)}")
-    base = Type(BaseType.__str__(type_))
-    values = []
-    for index, item in enumerate(items):
-        try:
-            values.append(parse_primitive_value_string(base, item.strip()))
-        except InvalidValue as error:
-            raise InvalidValue(type_, value_string, f"element {index} with {error}") from None
-    return values
-
-
-def parse_string_array_value_string(element_string: str, expected_size: int | None = None) -> list[str]:
-    """Return the items of a list of texts, which may be in quotes, with these."""
-    items = []
-    rest = element_string.strip()
-    while rest:
-        match = re.match(r"""("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[^,"'][^,]*)\s*(,|$)\s*""", rest)
-        if match is None:
-            raise ValueError(f"the list of texts '{element_string}' can not be read from '{rest}' on")
-        items.append(match[1].strip())
-        rest = rest[match.end() :]
-    return items
-
-
-def parse_primitive_value_string(type_: Type, value_string: str) -> Any:
-    """Return the value of a text, of a type without a package that is no array.
-
-    Raises
-    ------
-    InvalidValue
-        When the text is not a value of the type.
-    """
-    if not type_.is_primitive_type() or type_.is_array:
-        raise ValueError("the passed type must be a non-array primitive type")
-    kind = type_.type
-    if kind == "bool":
-        values = {"true": True, "1": True, "false": False, "0": False}
-        if value_string.lower() not in values:
-            raise InvalidValue(kind, value_string, "must be either 'true' / '1' or 'false' / '0'")
-        return values[value_string.lower()]
-    if kind in ("string", "wstring"):
-        return _text(type_, value_string)
-    if kind.startswith("float"):
-        try:
-            return float(value_string)
-        except ValueError:
-            raise InvalidValue(
-                kind, value_string, "must be a floating point number using '.' as the separator"
-            ) from None
-    return _integer(kind, value_string)
-
-
-def _integer(kind: str, text: str) -> int:
-    if kind in ("byte", "char"):
-        low, high = 0, 255
-    else:
-        match = re.fullmatch(r"(u?)int(\d+)", kind)
-        if match is None:
-            raise AssertionError(f"unknown primitive type '{kind}'")
-        bits = int(match[2])
-        low, high = (0, 2**bits - 1) if match[1] else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-    expected = f"must be a valid integer value >= {low} and <= {high}"
-    try:
-        value = int(text) if re.fullmatch(r"\s*[-+]?\d+\s*", text) else int(text, 0)
-    except ValueError:
-        raise InvalidValue(kind, text, expected) from None
-    if not low <= value <= high:
-        raise InvalidValue(kind, text, expected)
-    return value
-
-
-def _text(type_: Type, text: str) -> str:
-    for quote in ('"', "'"):
-        if text.startswith(quote) and text.endswith(quote):
-            text = text[1:-1]
-            if re.search(rf"(?<!\\){quote}", text):
-                raise InvalidValue(type_, text, "string inner quotes not properly escaped")
-            text = text.replace(f"\\{quote}", quote)
-            break
-    bound = type_.string_upper_bound
-    if bound and len(text) > bound:
-        raise InvalidValue(type_, text, f"string must not exceed the maximum length of {bound} characters")
-    return text
-
-
-def validate_field_types(
-    spec: MessageSpecification | ServiceSpecification | ActionSpecification, known_msg_types: Sequence[BaseType]
-) -> None:
-    """Raise UnknownMessageType for a field with a type of a package that is not known."""
-    if isinstance(spec, MessageSpecification):
-        what, messages = "Message", [spec]
-    elif isinstance(spec, ServiceSpecification):
-        what, messages = "Service", [spec.request, spec.response]
-    else:
-        what, messages = "Action", [spec.goal, spec.result, spec.feedback]
-    for field in (field for message in messages for field in message.fields):
-        base = BaseType(BaseType.__str__(field.type))
-        if not base.is_primitive_type() and base not in known_msg_types:
-            raise UnknownMessageType(f"{what} interface '{base}' contains an unknown field type: {field}")
