@@ -5,7 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from browser.cdp import Chromium
 from nodes.terminal import Terminal
@@ -23,15 +25,16 @@ _ROBOT = """<robot name="r">
   <visual><geometry><box size="3 3 0.2"/></geometry><material name="painted"/></visual>
   <visual><origin xyz="0 0 0.6"/><geometry><capsule radius="0.5" length="1"/></geometry><material name="blue"/></visual>
 </link></robot>"""
+_FEWEST_PIXELS = 5_000
 _GREEN, _BLUE = (0, 255, 0), (0, 0, 255)
 
 
-def _share(picture: Path, wanted: tuple[int, int, int]) -> float:
-    """Return how much of a picture has a colour, be it lit or in shadow."""
-    pixels = Image.open(picture).convert("RGB").resize((120, 80), Image.Resampling.NEAREST)
-    found = [pixels.getpixel((x, y)) for x in range(120) for y in range(80)]
+def _mask(picture: Path, wanted: tuple[int, int, int]) -> NDArray[np.bool_]:
+    """Return which pixels of a picture have a colour, be it lit or in shadow."""
+    pixels = np.asarray(Image.open(picture).convert("RGB"), dtype=int)
     main = wanted.index(255)
-    return sum(p[main] > 60 and all(2 * p[i] < p[main] for i in range(3) if i != main) for p in found) / len(found)
+    others = np.delete(pixels, main, axis=2).max(axis=2)
+    return (pixels[..., main] > 60) & (2 * others < pixels[..., main])
 
 
 def test_images_and_capsules_are_drawn(browser: Chromium, tmp_path: Path) -> None:
@@ -45,18 +48,19 @@ def test_images_and_capsules_are_drawn(browser: Chromium, tmp_path: Path) -> Non
         publisher.wait_for("Robot initialized")
         browser.open(view.wait_for("^window: ")[0].split()[1])
 
-        def seen() -> tuple[float, float]:
-            browser.screenshot(picture)
-            return _share(picture, _GREEN), _share(picture, _BLUE)
-
         browser.wait_for("document.body.innerText.includes('Robot')")
-        for _ in range(20):
-            green, blue = seen()
-            if green > 0.02 and blue > 0.01:
+        for _ in range(120):
+            browser.screenshot(picture)
+            green, blue = (_mask(picture, colour) for colour in (_GREEN, _BLUE))
+            if green.sum() > _FEWEST_PIXELS and blue.sum() > 0.2 * green.sum():
                 break
             browser.wait_for("new Promise((done) => setTimeout(() => done(true), 500))")
-        assert green > 0.02
-        assert blue > 0.006
+        assert green.sum() > _FEWEST_PIXELS
+        assert 0.2 < blue.sum() / green.sum() < 0.5  # how much of the plate the capsule covers, at any distance
+        rows, columns = (np.flatnonzero(blue.any(axis=axis)) for axis in (1, 0))
+        height, width = np.ptp(rows) + 1, np.ptp(columns) + 1
+        assert 1.4 < height / width < 1.9  # seen from above; without its upper cap it would be 1.1
+        assert blue[rows[0] + height // 30].sum() < 0.7 * width  # the top is round
         assert browser.errors == []
         assert view.interrupt() == 0
         assert publisher.interrupt() == 0

@@ -16,6 +16,8 @@ from types import TracebackType
 from typing import Self
 
 import psutil
+from rclpy.context import Context
+from rclpy.node import Node
 
 from printed import Printed
 
@@ -138,6 +140,25 @@ def until_shown(pattern: str, *words: str, domain: int) -> str:
             if re.search(pattern, command.text, re.MULTILINE):
                 return command.text
             assert time.monotonic() < deadline, f"{' '.join(words)} never showed {pattern!r}:\n{command.text}"
+
+
+def until_node(pattern: str, *, domain: int) -> str:
+    """Wait for a node that is not hidden, whose full name has a pattern; return the names of all, a line each."""
+    context = Context()
+    context.init(args=[], domain_id=domain)
+    try:
+        watcher = Node("_watcher", context=context, start_parameter_services=False, enable_rosout=False)
+
+        def shown() -> list[str]:
+            named = watcher.get_node_names_and_namespaces()
+            return sorted(f"{namespace.rstrip('/')}/{name}" for name, namespace in named if not name.startswith("_"))
+
+        is_there = watcher.handle.graph.wait_for(lambda: any(re.search(pattern, one) for one in shown()), TIMEOUT_S)
+        assert is_there, f"no node {pattern!r} among {shown()}"
+        return "\n".join(shown())
+    finally:
+        context.shutdown()
+        context.destroy()
 
 
 _BECOME = """

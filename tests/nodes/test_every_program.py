@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 
 from daidalos.workspaces.executables import executables
-from nodes.terminal import Terminal, until_shown
+from nodes.terminal import Terminal, until_node
 
 pytestmark = pytest.mark.slow
 
+# Those that open the studio: test_studio_commands.py; turtlesim's: turtlesim/test_programs.py.
 _PACKAGES = (
     "action_tutorials_py",
     "composition",
@@ -21,23 +22,11 @@ _PACKAGES = (
     "examples_rclpy_minimal_service",
     "examples_rclpy_minimal_subscriber",
     "key_teleop",
-    "plotjuggler",
-    "rqt",
-    "rqt_console",
-    "rqt_controller_manager",
-    "rqt_graph",
-    "rqt_gui",
-    "rqt_image_view",
-    "rqt_plot",
-    "rqt_reconfigure",
-    "rqt_topic",
-    "rviz2",
     "teleop_twist_keyboard",
     "tf2_ros",
     "tf2_tools",
     "topic_tools",
     "turtle_tf2_py",
-    "turtlesim",
 )
 _EXPRESSION = ("/nobody", "/out", "std_msgs/Header", "{frame_id: m.data}", "-w")
 _ARGUMENTS = {
@@ -61,7 +50,7 @@ _ARGUMENTS = {
 def test_program(package: str, executable: str, domain: int) -> None:
     words = _ARGUMENTS.get((package, executable), ())
     with Terminal("run", package, executable, *words, domain=domain) as program:
-        until_shown("^/", "node", "list", domain=domain)
+        until_node("^/", domain=domain)
         assert program.interrupt() == 0
         assert "rror" not in program.text
 

@@ -6,7 +6,7 @@ import contextlib
 
 import pytest
 
-from nodes.terminal import Terminal, until_shown
+from nodes.terminal import Terminal, until_node
 
 pytestmark = pytest.mark.slow
 
@@ -155,7 +155,7 @@ def test_parameters(domain: int) -> None:
 
 def test_a_parameter_that_sets_another(domain: int) -> None:
     with Terminal("run", "demo_nodes_py", "set_parameters_callback", domain=domain) as node:
-        until_shown("^/set_param_callback_node$", "node", "list", domain=domain)
+        until_node("^/set_param_callback_node$", domain=domain)
         with Terminal("param", "set", "/set_param_callback_node", "param1", "10.0", domain=domain) as command:
             command.wait_for("Set parameter successful")
         node.wait_for("param1 is now 10.0")

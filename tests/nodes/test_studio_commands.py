@@ -12,7 +12,7 @@ import aiohttp
 import pytest
 
 import daidalos
-from nodes.terminal import Terminal, until_shown
+from nodes.terminal import Terminal, until_node, until_shown
 
 pytestmark = pytest.mark.slow
 
@@ -42,9 +42,10 @@ def test_command(words: tuple[str, ...], query: str, node: str, domain: int) -> 
     with Terminal("run", *words, domain=domain) as program:
         address = program.wait_for("^window: http://localhost:")[0].split()[1]
         assert address.partition("/?")[2] == query.removeprefix("?")
-        shown = until_shown("^/", "node", "list", domain=domain)
+        shown = until_node("^/", domain=domain)
         assert re.fullmatch(node, shown)
         assert program.interrupt() == 0
+        assert "rror" not in program.text
 
 
 async def _status(address: str) -> int:
@@ -98,7 +99,7 @@ def test_mistakes_are_named(words: tuple[str, ...], error: str, domain: int) -> 
 def test_a_window_leaves_no_traces_in_the_graph(domain: int) -> None:
     with Terminal("run", "turtlesim", "turtlesim_node", domain=domain) as simulator:
         simulator.wait_for("^window: ")
-        assert until_shown("^/turtlesim", "node", "list", domain=domain) == "/turtlesim"
+        assert until_node("^/turtlesim", domain=domain) == "/turtlesim"
         assert until_shown("/turtle1/pose", "topic", "list", domain=domain).splitlines() == [
             "/parameter_events",
             "/rosout",

@@ -12,7 +12,7 @@ import yaml
 
 from nodes.stepped_terminal import Terminal as SteppedTerminal
 from nodes.stepped_terminal import Terminals
-from nodes.terminal import Terminal, until_shown
+from nodes.terminal import Terminal, until_node
 
 pytestmark = pytest.mark.slow
 stepped = pytest.mark.scenario(timeout=300, record=False)
@@ -208,7 +208,7 @@ def test_draw_square(terminal: Terminals) -> None:
 def test_ends_quietly_however_it_is_ended(executable: str, domain: int) -> None:
     for end in (Terminal.interrupt, Terminal.terminate):
         with Terminal("run", "turtlesim", executable, domain=domain) as program:
-            until_shown("^/", "node", "list", domain=domain)
+            until_node("^/", domain=domain)
             assert end(program) == 0
 
 
