@@ -14,7 +14,8 @@ from pathlib import Path
 from benchmarks.runs import launch_until, measure
 
 SCENARIOS: dict[str, tuple[list[str], float, float]] = {
-    "turtlesim": (["turtlesim", "multisim.launch.py"], 1.0, 1000.0),
+    "turtlesim": (["turtlesim", "multisim.launch.py"], 1.0, 20_000.0),
+    "turtlesim_driven": (["square.launch.py"], 1.0, 200.0),
     "waffle_lidar": (["lidar.launch.py"], 5.0, 60.0),
     "arena": (["daidalos_demo", "demo.launch.py", "studio:=false"], 15.0, 75.0),
 }
@@ -32,6 +33,15 @@ def generate_launch_description():
     return LaunchDescription([
         IncludeLaunchDescription(arena), ExecuteProcess(cmd=["ros2", "topic", "hz", "/scan"], output="log"),
     ])
+"""
+SQUARE = """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    programs = ("turtlesim_node", "draw_square")
+    return LaunchDescription([Node(package="turtlesim", executable=name) for name in programs])
 """
 MESSAGES = """
 import rclpy
@@ -80,7 +90,8 @@ def run() -> dict[str, float | str]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "lidar.launch.py").write_text(LIDAR)
-        figures: dict[str, float | str] = {}
+        (folder / "square.launch.py").write_text(SQUARE)
+        figures = _Figures()
         for name, text in LOOPS.items():
             figures[f"lockstep.{name}_us"] = 1e6 * _cost_of_loop(folder, text, in_lockstep=True)
             figures[f"lockstep.{name}_in_real_time_us"] = 1e6 * _cost_of_loop(folder, text, in_lockstep=False)
@@ -89,6 +100,14 @@ def run() -> dict[str, float | str]:
             figures[f"lockstep.{name}_times_real_time"] = (long_s - short_s) / (long.seconds - short.seconds)
             figures[f"lockstep.{name}_peak_mb"] = long.peak_mb
     return figures
+
+
+class _Figures(dict[str, float | str]):
+    """Figures that are printed as they are measured: the last one comes half an hour after the first."""
+
+    def __setitem__(self, name: str, value: float | str) -> None:
+        super().__setitem__(name, value)
+        print(f"  {name}: {value:.4g}" if isinstance(value, float) else f"  {name}: {value}", flush=True)
 
 
 def _cost_of_loop(folder: Path, text: str, *, in_lockstep: bool) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -67,6 +68,7 @@ class ClockHandle(Destroyable):
         self._override: int | None = None
         self._last_override = 0
         self._jumps: list[_JumpCallback] = []
+        self._forward_ns, self._backward_ns = math.inf, -math.inf  # the smallest jumps that a callback is told of
         self._timers: list[tuple[int, int, int, ClockTimer]] = []
         self._count = itertools.count().__next__
         self.changed = threading.Condition(threading.RLock())
@@ -114,7 +116,7 @@ class ClockHandle(Destroyable):
             if self._override is None:
                 return
             before = self._override
-            if self._jumps:
+            if not self._backward_ns < now_ns - before < self._forward_ns:
                 self._jump(ClockChange.ROS_TIME_NO_CHANGE, before, now_ns)
             else:
                 self._override = now_ns
@@ -160,9 +162,15 @@ class ClockHandle(Destroyable):
     ) -> None:
         """Call the handle's `call_pre` and `call_post` at jumps over these thresholds (0: never)."""
         with self.changed:
-            self._jumps.append(_JumpCallback(pyjump_handle, on_clock_change, min_forward, min_backward))
+            self._set_jumps([*self._jumps, _JumpCallback(pyjump_handle, on_clock_change, min_forward, min_backward)])
 
     def remove_clock_callback(self, pyjump_handle: Any) -> None:
         """Remove a handle that `add_clock_callback` added."""
         with self.changed:
-            self._jumps = [jump for jump in self._jumps if jump.owner is not pyjump_handle]
+            self._set_jumps([jump for jump in self._jumps if jump.owner is not pyjump_handle])
+
+    def _set_jumps(self, jumps: list[_JumpCallback]) -> None:
+        self._jumps = jumps
+        forward = (jump.min_forward_ns for jump in jumps if jump.min_forward_ns > 0)
+        backward = (jump.min_backward_ns for jump in jumps if jump.min_backward_ns < 0)
+        self._forward_ns, self._backward_ns = min(forward, default=math.inf), max(backward, default=-math.inf)
