@@ -1,5 +1,9 @@
 """A robot of scripts for trees."""
 
+import numpy as np
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
+
 from daidalos.navigation.trees.services import Outcome
 
 SUCCESS = Outcome(True)
@@ -32,6 +36,28 @@ class ScriptedRobot:
         self.time = 0.0
         self.log = []
         self.goals = {}
+        self.pose = np.zeros(3)
+        self.speed = 0.0
+        self.heard = {}
+        self.transforms = set()
+
+    def robot_pose(self, frame="", base=""):
+        return self.pose
+
+    def robot_pose_stamped(self, frame="", base=""):
+        return None if self.pose is None else stamped(*self.pose[:2])
+
+    def pose_in(self, pose, frame=""):
+        return np.array([pose.pose.position.x, pose.pose.position.y, 0.0])
+
+    def can_transform(self, target, source):
+        return (target, source) in self.transforms
+
+    def velocity(self):
+        return np.array([self.speed, 0.0, 0.0])
+
+    def latest(self, topic, kind, *, latched=False):
+        return self.heard.get(topic)
 
     def now(self):
         return self.time
@@ -58,3 +84,18 @@ def document(inside, **attributes):
     """XML of one tree."""
     more = "".join(f' {key}="{value}"' for key, value in attributes.items())
     return f'<root BTCPP_format="4"{more}><BehaviorTree ID="Main">{inside}</BehaviorTree></root>'
+
+
+def stamped(x, y=0.0, sec=0):
+    """A pose on the map."""
+    pose = PoseStamped()
+    pose.header.frame_id, pose.header.stamp.sec = "map", sec
+    pose.pose.position.x, pose.pose.position.y = float(x), float(y)
+    return pose
+
+
+def path_of(*places):
+    """A path over places on the x axis."""
+    path = Path(poses=[stamped(x) for x in places])
+    path.header.frame_id = "map"
+    return path

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from std_msgs.msg import String
 
 from daidalos.navigation.trees.behavior_tree import BehaviorTree
 from daidalos.navigation.trees.blackboard import Blackboard
@@ -220,11 +221,13 @@ def test_recoveries_are_counted():
     assert tree.blackboard.get("number_recoveries") == 4
 
 
-def test_selectors_take_what_was_chosen_or_the_default():
+@pytest.mark.parametrize("kind", ["planner", "controller", "smoother", "goal_checker", "progress_checker"])
+def test_selectors_take_what_was_chosen_or_the_default(kind):
     robot = ScriptedRobot()
-    tree = build(robot, '<PlannerSelector default_planner="GridBased" selected_planner="{planner}"/>')
+    name = "".join(word.capitalize() for word in kind.split("_"))
+    tree = build(robot, f'<{name}Selector default_{kind}="First" selected_{kind}="{{chosen}}"/>')
     robot.run(tree)
-    assert tree.blackboard.get("planner") == "GridBased"
-    tree.blackboard.set("planner_selector", "Smac")
+    assert tree.blackboard.get("chosen") == "First"
+    robot.heard[f"{kind}_selector"] = String(data="Second")
     robot.run(tree)
-    assert tree.blackboard.get("planner") == "Smac"
+    assert tree.blackboard.get("chosen") == "Second"

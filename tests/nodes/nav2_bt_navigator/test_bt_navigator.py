@@ -10,15 +10,22 @@ import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
-from nav2_msgs.action import ComputePathToPose, FollowPath, NavigateToPose
+from nav2_msgs.action import (
+    ComputePathThroughPoses,
+    ComputePathToPose,
+    FollowPath,
+    NavigateThroughPoses,
+    NavigateToPose,
+)
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.task import Future
+from std_msgs.msg import String
 
 from daidalos.nodes.conversions import path_message, pose2_of, pose_stamped
 from daidalos.nodes.nav2_bt_navigator.bt_navigator import BtNavigator
 from daidalos.samples.fields import time_message
-from nodes.stepped import Stage
+from nodes.stepped import LATCHED, Stage
 
 TREE = """
 <root main_tree_to_execute="MainTree">
@@ -144,6 +151,54 @@ def test_the_default_tree_replans_while_it_drives(stage: Callable[[dict[str, Any
     bench.stage.step_until(lambda: len(bench.controller.handles) > 1)
     bench.controller.end()
     assert bench.stage.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_several_poses_are_driven_through(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    bench = Bench(stage({})).start()
+    planner = PlayedServer(bench.stage, ComputePathThroughPoses, "compute_path_through_poses")
+    feedback: list[Any] = []
+    bench.stage.step()
+    poses = [pose(0.5), pose(1.0), pose(2.0)]
+    handle = bench.stage.send(NavigateThroughPoses, "navigate_through_poses", feedback.append, poses=poses)
+    assert handle.accepted
+    path = path_message(np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]]), "map", bench.stage.stamp)
+    bench.stage.step_until(lambda: bool(planner.handles))
+    assert list(planner.handles[0].request.goals) == poses[1:]  # the first is within 0.7 m
+    assert not bench.send(pose(9.0)).accepted  # another navigator is busy
+    planner.end(path=path)
+    bench.stage.step_until(lambda: bool(bench.controller.handles))
+    bench.robot.pose = np.array([0.9, 0.0, 0.0])
+    bench.stage.step_until(lambda: len(planner.handles) > 1)
+    assert list(planner.handles[1].request.goals) == poses[2:]
+    planner.end(path=path_message(np.array([[0.9, 0.0, 0.0], [2.0, 0.0, 0.0]]), "map", bench.stage.stamp))
+    bench.stage.step_until(lambda: feedback[-1].feedback.number_of_poses_remaining == 1)
+    bench.stage.step_until(lambda: len(bench.controller.handles) > 1)
+    bench.controller.end()
+    assert bench.stage.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_no_poses_are_rejected(bench: Bench) -> None:
+    assert not bench.stage.send(NavigateThroughPoses, "navigate_through_poses").accepted
+
+
+def test_a_tree_cancels_the_controller_and_takes_the_chosen_one(
+    stage: Callable[[dict[str, Any]], Stage], tmp_path: Path
+) -> None:
+    file = tmp_path / "cancel.xml"
+    file.write_text(
+        '<root BTCPP_format="4"><BehaviorTree ID="T"><Sequence>'
+        '<ControllerSelector default_controller="A" selected_controller="{c}"/>'
+        '<ComputePathToPose goal="{goal}" path="{path}"/>'
+        '<ReactiveFallback><Sequence><TimeExpired seconds="1"/><CancelControl/></Sequence>'
+        '<FollowPath path="{path}" controller_id="{c}"/></ReactiveFallback></Sequence></BehaviorTree></root>'
+    )
+    bench = Bench(stage({"/bt_navigator": {"default_nav_to_pose_bt_xml": str(file)}})).start()
+    assert bench.stage.end(bench.drive(pose(2.0)))[0] == GoalStatus.STATUS_SUCCEEDED
+    assert bench.controller.handles[0].request.controller_id == "A"
+    bench.stage.publish("controller_selector", String(data="B"), LATCHED)
+    bench.stage.step_for(0.2)
+    bench.drive(pose(2.0))
+    assert bench.controller.handles[1].request.controller_id == "B"
 
 
 def test_a_goal_may_name_its_tree(stage: Callable[[dict[str, Any]], Stage], tree: Path) -> None:

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
-from nav2_msgs.action import ComputePathToPose
+from nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
 from nav2_msgs.msg import Costmap
+from nav2_msgs.srv import IsPathValid
 from nav_msgs.msg import Path
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
@@ -109,6 +110,48 @@ def test_a_path_leads_from_the_robot_through_the_gap(bench: Bench) -> None:
     assert result.planning_time.nanosec > 0
     bench.stage.step_until(lambda: bool(published))
     assert published == [result.path]
+
+
+def test_a_path_leads_through_poses(bench: Bench) -> None:
+    goals = [pose(-2.0, 0.0), pose(1.5, 0.0), pose(1.5, -1.0, yaw=1.0)]
+    handle = bench.stage.send(ComputePathThroughPoses, "compute_path_through_poses", goals=goals)
+    status, result = bench.stage.end(handle)
+    assert (status, result.error_code) == (GoalStatus.STATUS_SUCCEEDED, Result.NONE), result.error_msg
+    path = path_array(result.path)
+    assert path[0][:2] == pytest.approx([-1.5, 1.0], abs=0.05)
+    assert path[-1] == pytest.approx([1.5, -1.0, 1.0], abs=0.05)
+    for goal in goals:
+        at = goal.pose.position
+        assert np.hypot(path[:, 0] - at.x, path[:, 1] - at.y).min() < 0.05
+    assert np.hypot(*np.diff(path[:, :2], axis=0).T).max() < 0.1
+
+
+@pytest.mark.parametrize(
+    ("goals", "code"),
+    [
+        ([], ComputePathThroughPoses.Result.NO_VIAPOINTS_GIVEN),
+        ([pose(1.5, 0.0), pose(2.2, 1.5)], ComputePathThroughPoses.Result.NO_VALID_PATH),
+    ],
+)
+def test_poses_without_a_path_are_aborted_with_the_reason(bench: Bench, goals: list[Any], code: int) -> None:
+    handle = bench.stage.send(ComputePathThroughPoses, "compute_path_through_poses", goals=goals)
+    status, result = bench.stage.end(handle)
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, code)
+
+
+def test_a_path_is_valid_unless_an_obstacle_is_on_what_is_left_of_it(bench: Bench) -> None:
+    def ask(*places: tuple[float, float], **more: Any) -> Any:
+        path = Path(poses=[pose(x, y) for x, y in places])
+        path.header.frame_id = "map"
+        return bench.stage.call(IsPathValid, "is_path_valid", path=path, max_cost=254, **more)
+
+    assert ask((-1.5, 1.0), (-1.5, 0.0)).is_valid
+    blocked = ask((-1.5, 1.0), (0.02, 1.0), (0.5, 1.0))
+    assert (blocked.is_valid, list(blocked.invalid_pose_indices)) == (False, [1])
+    assert ask((0.02, 1.0), (-1.5, 1.0), (-1.5, 0.0)).is_valid  # the obstacle lies behind the robot
+    assert ask((-1.5, 1.0), (-2.7, -1.7)).is_valid
+    assert not ask((-1.5, 1.0), (-2.7, -1.7), consider_unknown_as_obstacle=True).is_valid
+    assert not ask().is_valid
 
 
 def test_a_start_may_be_given(bench: Bench) -> None:
@@ -216,16 +259,16 @@ def test_it_can_be_configured_again(bench: Bench) -> None:
     [
         (changed("/planner_server", Strict={"plugin": "nav2_navfn_planner::NavFn"}), "NavfnPlanner"),
         (
-            changed(COSTMAP, plugins=["voxel_layer"], voxel_layer={"plugin": "nav2_costmap_2d::VoxelLayer"}),
-            "VoxelLayer",
+            changed(COSTMAP, plugins=["voxel_layer"], voxel_layer={"plugin": "nav2_costmap_2d::BoxLayer"}),
+            "BoxLayer",
         ),
         (
             changed(
                 COSTMAP,
                 plugins=["obstacle_layer"],
-                obstacle_layer={"observation_sources": "depth", "depth": {"data_type": "PointCloud2"}},
+                obstacle_layer={"observation_sources": "depth", "depth": {"data_type": "PointCloud3"}},
             ),
-            "PointCloud2",
+            "PointCloud3",
         ),
     ],
 )

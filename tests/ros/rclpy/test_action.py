@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from action_msgs.msg import GoalStatus
+from action_msgs.srv import CancelGoal
 from rclpy.action import (
     ActionClient,
     ActionServer,
@@ -131,6 +132,16 @@ def test_cancelling_is_a_wish(node: Node, accepted: bool) -> None:
     assert pair.wait(goal.get_result_async()).status == expected
     with pytest.raises(RCLError):
         goals[0].succeed()
+
+
+def test_a_goal_that_is_cancelled_again_is_not_cancelable(node: Node) -> None:
+    goals: list[Any] = []
+    pair = Pair(node, None, handle_accepted_callback=goals.append, cancel_callback=lambda goal: CancelResponse.ACCEPT)
+    goal = pair.send()
+    assert pair.wait(goal.cancel_goal_async()).goals_canceling
+    again = pair.wait(goal.cancel_goal_async())
+    assert (list(again.goals_canceling), again.return_code) == ([], CancelGoal.Response.ERROR_GOAL_TERMINATED)
+    assert goals[0].is_cancel_requested
 
 
 def test_a_goal_may_be_carried_out_elsewhere(node: Node) -> None:

@@ -27,7 +27,7 @@ class ActionNode(Node):
     INTERFACE : str
         Type of the action or service, such as ``nav2_msgs/action/Spin``; empty for one named as the class.
     SERVER : str
-        Name of the action's server where the tree names none; a service's name is the input `service_name`.
+        Name of the action's server, or of the service, where the tree names none.
     UPDATES : tuple of str
         Inputs that are passed on to the running task when they change.
     RECOVERY : bool
@@ -51,6 +51,16 @@ class ActionNode(Node):
         By default those that the ports name.
         """
         return {cls.PORTS[name].field or name: value for name, value in inputs.items()}
+
+    @classmethod
+    def service(cls, inputs: Mapping[str, Any]) -> str:
+        """Return the name of the service that is called; by default the input `service_name`."""
+        return str(inputs.get("service_name") or cls.SERVER)
+
+    @classmethod
+    def is_success(cls, response: Any) -> bool:
+        """Return whether a service's response means success; by default each does."""
+        return True
 
     @classmethod
     def outputs(cls, result: Any) -> dict[str, Any]:

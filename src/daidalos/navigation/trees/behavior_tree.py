@@ -24,6 +24,9 @@ DEFAULT_TREE = (
 )
 """Default tree of `navigate_to_pose`."""
 
+THROUGH_POSES_TREE = DEFAULT_TREE.with_name("navigate_through_poses_w_replanning_and_recovery.xml")
+"""Default tree of `navigate_through_poses`."""
+
 _EXPLICIT = frozenset({"Action", "Condition", "Control", "Decorator"})
 _COMMENTARY = frozenset({"name", "ID", "_description", "_fullpath", "_uid"})
 

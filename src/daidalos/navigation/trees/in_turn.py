@@ -18,21 +18,26 @@ class InTurn(Control):
         one, and otherwise as the child did.
     reactive : bool
         Class attribute: begin with the first child at every tick.
+    remembers : bool
+        Class attribute: begin with the child that ended the last run with another status.
     """
 
     goes_on_after: ClassVar[Status]
     reactive: ClassVar[bool] = False
+    remembers: ClassVar[bool] = False
 
     def tick(self) -> Iterator[Any]:
         """Tick children until one ends with another status."""
-        if self.status != Status.RUNNING:
+        is_remembered = self.remembers and self.status not in (Status.INVALID, self.goes_on_after)
+        if self.status != Status.RUNNING and not is_remembered:
             self.current_child = None
         first = self.children.index(self.current_child) if self.current_child and not self.reactive else 0
         for child in self.children[first:]:
             yield from child.tick()
             if child.status != self.goes_on_after:
+                status = child.status
+                self.conclude(status, runs=child)
                 self.current_child = child
-                self.conclude(child.status, runs=child)
                 yield self
                 return
         self.conclude(self.goes_on_after)

@@ -230,3 +230,7 @@ class Decorator(TreeNode, py_trees.decorators.Decorator):  # type: ignore[misc]
         py_trees.decorators.Decorator.__init__(self, context.name, context.children[0])
         self.ports = ports
         self.services = context.services
+
+    def update(self) -> Status:
+        """Return the status of the child."""
+        return self.decorated.status

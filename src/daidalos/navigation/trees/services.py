@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from daidalos.common.arrays import Array
     from daidalos.navigation.trees.action_node import ActionNode
 
 
@@ -50,6 +51,39 @@ class Services(Protocol):
 
     def now(self) -> float:
         """Return the time [s]."""
+
+    def robot_pose(self, frame: str = "", base: str = "") -> Array | None:
+        """Return the latest pose (x, y, yaw) of the robot, None where it is not known.
+
+        Parameters
+        ----------
+        frame, base : str
+            Frames of the pose and of the robot; the navigator's own where empty.
+        """
+
+    def robot_pose_stamped(self, frame: str = "", base: str = "") -> Any | None:
+        """Return the same as a ``geometry_msgs/msg/PoseStamped``."""
+
+    def pose_in(self, pose: Any, frame: str = "") -> Array | None:
+        """Return a ``PoseStamped`` as (x, y, yaw) in a frame, the navigator's where empty; None where not known."""
+
+    def can_transform(self, target: str, source: str) -> bool:
+        """Return whether there is a transform between two frames."""
+
+    def velocity(self) -> Array | None:
+        """Return the robot's velocity (x, y, yaw) by its odometry, None where there is none."""
+
+    def latest(self, topic: str, kind: str, *, latched: bool = False) -> Any | None:
+        """Return the last message of a topic, None until one has come; it is subscribed to from the first call on.
+
+        Parameters
+        ----------
+        topic : str
+        kind : str
+            Type of its messages, such as ``std_msgs/msg/String``.
+        latched : bool
+            Whether messages from before the subscription are asked for.
+        """
 
     def start(self, node: type[ActionNode], goal: Mapping[str, Any]) -> Task:
         """Start a task.

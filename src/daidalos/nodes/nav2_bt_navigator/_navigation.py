@@ -8,6 +8,7 @@ from py_trees.common import Status
 from rclpy.task import Future
 from rclpy.time import Time
 
+from daidalos.navigation.trees.action.poses import goals_of
 from daidalos.navigation.trees.action_node import RECOVERIES
 from daidalos.navigation.trees.behavior_tree import BehaviorTree
 from daidalos.navigation.trees.blackboard import Blackboard
@@ -21,9 +22,9 @@ class Navigation:
     Parameters
     ----------
     goal_handle
-        Handle of the first goal of ``navigate_to_pose``.
+        Handle of the first goal of ``navigate_to_pose`` or ``navigate_through_poses``.
     tree
-        Ticked for it; its blackboard gets the entry ``goal``.
+        Ticked for it; its blackboard gets the entry ``goal``, and ``goals`` where there are several.
     begun
         Time of the start.
 
@@ -40,7 +41,20 @@ class Navigation:
         self.begun = begun
         self.ended = Future()
         self._tree = tree
-        self.blackboard.set("goal", goal_handle.request.pose)
+        self._set_goals(goal_handle.request)
+
+    def _set_goals(self, request: Any) -> None:
+        """Set the pose or the poses of a goal on the blackboard."""
+        if hasattr(request, "poses"):
+            self.blackboard.set("goals", list(request.poses))
+            self.blackboard.set("goal", request.poses[-1])
+        else:
+            self.blackboard.set("goal", request.pose)
+
+    @property
+    def poses_remaining(self) -> int:
+        """Number of the poses that the tree has not passed yet."""
+        return len(goals_of(self.blackboard.get("goals")))
 
     @property
     def blackboard(self) -> Blackboard:
@@ -65,7 +79,7 @@ class Navigation:
             With which the previous goal is aborted.
         """
         previous, self.goal_handle = self.goal_handle, goal_handle
-        self.blackboard.set("goal", goal_handle.request.pose)
+        self._set_goals(goal_handle.request)
         self.blackboard.set(RECOVERIES, 0)
         if previous.is_active:
             previous.abort(result)

@@ -3,30 +3,98 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from rclpy.action import ActionClient
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.time import Time
+from tf2_ros import Buffer, TransformException
 
+from daidalos.common.arrays import Array
+from daidalos.common.pose2 import compose
 from daidalos.navigation.trees.action_node import ActionNode
 from daidalos.navigation.trees.services import Outcome, Task
 from daidalos.nodes.action_results import error_name
+from daidalos.nodes.conversions import pose2_of, pose2_of_transform, pose_stamped, velocity_of
+from daidalos.nodes.qos import LATCHED
 from daidalos.samples.fields import duration_message
 
 _SUCCEEDED = 4
 
 
 class GraphServices:
-    """Tasks of a tree, run through a node; see `daidalos.navigation.trees.services.Services`."""
+    """What a tree asks of a robot, through a node; see `daidalos.navigation.trees.services.Services`.
 
-    def __init__(self, node: Node) -> None:
+    Parameters
+    ----------
+    node : Node
+        The navigator.
+    buffer : Buffer
+        Its transforms.
+    frames : tuple of str
+        The frame of goals, and that of the robot's base.
+    odom_topic : str
+        Topic of the odometry.
+    """
+
+    def __init__(self, node: Node, buffer: Buffer, frames: tuple[str, str], odom_topic: str) -> None:
         self._node = node
+        self._buffer = buffer
+        self._frame, self._base = frames
+        self._odom_topic = odom_topic
         self._actions: dict[str, ActionClient] = {}
         self._clients: dict[str, Any] = {}
+        self._latest: dict[str, Any] = {}
 
     def now(self) -> float:
         """Time of the node's clock [s]."""
         return self._node.get_clock().now().nanoseconds * 1e-9
+
+    def _pose_of(self, target: str, source: str) -> tuple[Array, Any] | None:
+        try:
+            found = self._buffer.lookup_transform(target or self._frame, source or self._base, Time())
+        except TransformException:
+            return None
+        return pose2_of_transform(found.transform), found.header.stamp
+
+    def robot_pose(self, frame: str = "", base: str = "") -> Array | None:
+        """Return the latest pose (x, y, yaw) of the robot, None where it is not known."""
+        found = self._pose_of(frame, base)
+        return None if found is None else found[0]
+
+    def robot_pose_stamped(self, frame: str = "", base: str = "") -> Any | None:
+        """Return the same as a ``geometry_msgs/msg/PoseStamped``."""
+        found = self._pose_of(frame, base)
+        return None if found is None else pose_stamped(found[0], frame or self._frame, found[1])
+
+    def pose_in(self, pose: Any, frame: str = "") -> Array | None:
+        """Return a stamped pose as (x, y, yaw) in a frame, None where it cannot be transformed."""
+        target, source = frame or self._frame, pose.header.frame_id or self._frame
+        if target == source:
+            return pose2_of(pose.pose)
+        found = self._pose_of(target, source)
+        return None if found is None else compose(found[0], pose2_of(pose.pose))
+
+    def can_transform(self, target: str, source: str) -> bool:
+        """Return whether there is a transform between two frames."""
+        return bool(self._buffer.can_transform(target, source, Time()))
+
+    def velocity(self) -> Array | None:
+        """Return the robot's velocity (x, y, yaw) by its odometry, None where there is none."""
+        odometry = self.latest(self._odom_topic, "nav_msgs/msg/Odometry")
+        return None if odometry is None else velocity_of(odometry.twist.twist)
+
+    def latest(self, topic: str, kind: str, *, latched: bool = False) -> Any | None:
+        """Return the last message of a topic, None until one has come; see `Services.latest`."""
+        from rosidl_runtime_py.utilities import get_message
+
+        if topic not in self._latest:
+            self._latest[topic] = None
+            qos = LATCHED if latched else QoSProfile(depth=10)
+            self._node.create_subscription(get_message(kind), topic, partial(self._latest.__setitem__, topic), qos)
+        return self._latest[topic]
 
     def start(self, node: type[ActionNode], goal: Mapping[str, Any]) -> Task:
         """Start what a leaf asks for."""
@@ -44,13 +112,13 @@ class GraphServices:
         from rosidl_runtime_py.utilities import get_service
 
         kind = get_service(node.INTERFACE)
-        name = goal["service_name"]
+        name = node.service(goal)
         if name not in self._clients:
             self._clients[name] = self._node.create_client(kind, name)
         client = self._clients[name]
         if not client.service_is_ready():
             return _Failed(f"the service {name} is not there")
-        return _ServiceTask(client.call_async(_filled(kind.Request(), node.goal(goal))))
+        return _ServiceTask(client.call_async(_filled(kind.Request(), node.goal(goal))), node)
 
 
 def _filled(message: Any, fields: Mapping[str, Any]) -> Any:
@@ -86,12 +154,13 @@ class _Failed:
 class _ServiceTask:
     """Call of a service."""
 
-    def __init__(self, future: Any) -> None:
+    def __init__(self, future: Any, node: type[ActionNode]) -> None:
         self._future = future
+        self._node = node
 
     def poll(self) -> Outcome | None:
-        """Return success once the answer has come."""
-        return Outcome(True) if self._future.done() else None
+        """Return whether the answer means success, once it has come."""
+        return Outcome(self._node.is_success(self._future.result())) if self._future.done() else None
 
     def update(self, goal: Mapping[str, Any]) -> None:
         """Do nothing: a call cannot be changed."""

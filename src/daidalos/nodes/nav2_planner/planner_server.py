@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
+import numpy as np
 from rclpy.time import Time
 from tf2_ros import TransformException
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import compose
 from daidalos.navigation.contracts import GlobalPlanner
+from daidalos.navigation.costmap.costmap import NO_INFORMATION
+from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import PLANNERS
 from daidalos.nodes.action_results import TransformFailed
@@ -29,6 +33,12 @@ class UnknownPlanner(NavigationError):
     code = "INVALID_PLANNER"
 
 
+class NoGoals(NavigationError):
+    """There are no poses to plan through."""
+
+    code = "NO_VIAPOINTS_GIVEN"
+
+
 @dataclass(frozen=True)
 class PlannerServerParameters(Parameters):
     """Parameters of the node, by their Nav2 names."""
@@ -43,7 +53,7 @@ class PlannerServerParameters(Parameters):
 
 
 class PlannerServer(ManagedNode):
-    """Server of ``compute_path_to_pose``."""
+    """Server of ``compute_path_to_pose``, ``compute_path_through_poses`` and ``is_path_valid``."""
 
     def __init__(self, node_name: str = "planner_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
@@ -59,21 +69,24 @@ class PlannerServer(ManagedNode):
 
     def configure(self) -> None:
         """Make the planners and serve."""
-        from nav2_msgs.action import ComputePathToPose
+        from nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
+        from nav2_msgs.srv import IsPathValid
         from nav_msgs.msg import Path
 
         self._planners = {name: self._make_planner(name) for name in self._settings.planner_plugins}
         self._plan_publisher = self.create_publisher(Path, "plan", 1)
-        self.serve_action(ComputePathToPose, "compute_path_to_pose", self._compute_path)
+        self.serve_action(ComputePathToPose, "compute_path_to_pose", partial(self._compute_path, ComputePathToPose))
+        self.serve_action(
+            ComputePathThroughPoses, "compute_path_through_poses", partial(self._compute_path, ComputePathThroughPoses)
+        )
+        self.create_service(IsPathValid, "is_path_valid", self._on_is_path_valid)
 
     def _make_planner(self, name: str) -> GlobalPlanner:
         maker = ExtensionMaker(self, self._costmap.extension_context)
         return maker.make(PLANNERS, name, "nav2_navfn_planner::NavfnPlanner")
 
-    async def _compute_path(self, goal_handle: Any) -> Any:
-        from nav2_msgs.action import ComputePathToPose
-
-        result = ComputePathToPose.Result()
+    async def _compute_path(self, action: Any, goal_handle: Any) -> Any:
+        result = action.Result()
         begun = time.monotonic_ns()
         await self._costmap.until_current(self, self._settings.costmap_update_timeout)
         if not goal_handle.is_active:
@@ -106,8 +119,35 @@ class PlannerServer(ManagedNode):
         start = self._in_global_frame(request.start) if request.use_start else self._costmap.robot_pose()
         if start is None:
             raise TransformFailed(self._costmap.pose_problem)
-        goal = self._in_global_frame(request.goal)
-        return planner.create_plan(self._costmap.snapshot(), start, goal)
+        if not hasattr(request, "goals"):
+            return planner.create_plan(self._costmap.snapshot(), start, self._in_global_frame(request.goal))
+        if not request.goals:
+            raise NoGoals("there are no poses to plan through")
+        costmap = self._costmap.snapshot()
+        parts: list[Any] = []
+        for goal in map(self._in_global_frame, request.goals):
+            parts.append(planner.create_plan(costmap, start, goal)[int(bool(parts)) :])
+            start = goal
+        return np.concatenate(parts)
+
+    def _on_is_path_valid(self, request: Any, response: Any) -> Any:
+        """Answer whether the rest of a path, from where the robot is, has no obstacle; an empty one is not valid."""
+        robot = self._costmap.robot_pose()
+        poses = [] if robot is None or self._costmap.layered is None else list(request.path.poses)
+        response.is_valid = bool(poses)
+        if robot is None or not poses:
+            return response
+        places = np.array([self._in_global_frame(pose) for pose in poses])
+        nearest = int(np.argmin(np.hypot(*(places[:, :2] - robot[:2]).T)))
+        checker = FootprintCollisionChecker(self._costmap.snapshot(), self._costmap.footprint)
+        costs = [checker.footprint_cost_at(place) for place in places[nearest:]]
+        blocked = [
+            nearest + index
+            for index, cost in enumerate(costs)
+            if (request.consider_unknown_as_obstacle if cost == NO_INFORMATION else cost >= request.max_cost)
+        ]
+        response.is_valid, response.invalid_pose_indices = not blocked, blocked
+        return response
 
     def _in_global_frame(self, stamped: Any) -> Any:
         """Return a stamped pose as (x, y, yaw) in the costmap's frame."""

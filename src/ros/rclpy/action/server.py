@@ -259,7 +259,7 @@ status_pub_qos_profile
         with self._lock:
             wanted, response.return_code = self._goals_to_cancel(request.goal_info)
         for goal_handle in wanted:
-            if await self._is_cancel_accepted(goal_handle):
+            if await self._is_cancel_accepted(goal_handle) and _is_cancelable(goal_handle):
                 goal_handle._update_state(GoalEvent.CANCEL_GOAL)
                 response.goals_canceling.append(goal_handle._goal_info)
         if wanted and not response.goals_canceling:
@@ -272,13 +272,13 @@ status_pub_qos_profile
 
         key = bytes(info.goal_id.uuid)
         stamp = (info.stamp.sec, info.stamp.nanosec)
-        goals = [goal for goal in self._goal_handles.values() if goal.is_active]
+        goals = [goal for goal in self._goal_handles.values() if _is_cancelable(goal)]
         if any(key):
             one = self._goal_handles.get(key)
             if one is None:
                 return [], CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
             if stamp == (0, 0):
-                if not one.is_active:
+                if not _is_cancelable(one):
                     return [], CancelGoal.Response.ERROR_GOAL_TERMINATED
                 return [one], CancelGoal.Response.ERROR_NONE
         elif stamp == (0, 0):
@@ -387,6 +387,10 @@ status_pub_qos_profile
         with self._lock:
             self._goal_handles.clear()
             self._result_futures.clear()
+
+
+def _is_cancelable(goal: ServerGoalHandle) -> bool:
+    return goal.is_active and not goal.is_cancel_requested
 
 
 def _stamp(goal: ServerGoalHandle) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""Action nodes that select the planner or controller of later nodes."""
+"""Action nodes that select the plugin of later nodes."""
 
 from typing import ClassVar
 
@@ -7,39 +7,62 @@ from py_trees.common import Status
 from daidalos.navigation.trees.node import Node, Port
 
 
-class PlannerSelector(Node):
+def _ports(kind: str) -> dict[str, Port]:
+    return {
+        f"default_{kind}": Port(str),
+        "topic_name": Port(str, f"{kind}_selector"),
+        f"selected_{kind}": Port(str, output=True),
+    }
+
+
+class _Selector(Node):
+    """Action node that outputs the last name that came on `topic_name`, or the default."""
+
+    KIND: ClassVar[str]
+
+    def update(self) -> Status:
+        """Return success."""
+        heard = self.services.latest(self.ports.get("topic_name"), "std_msgs/msg/String", latched=True)
+        chosen = heard.data if heard is not None else ""
+        self.ports.set(f"selected_{self.KIND}", chosen or self.ports.get(f"default_{self.KIND}"))
+        return Status.SUCCESS
+
+
+class PlannerSelector(_Selector):
     """Action node that outputs the last selected planner, or the default."""
 
     names = ("PlannerSelector",)
-    PORTS: ClassVar[dict[str, Port]] = {
-        "default_planner": Port(str),
-        "topic_name": Port(str, "planner_selector"),
-        "selected_planner": Port(str, output=True),
-    }
-
-    def update(self) -> Status:
-        """Return success."""
-        _choose(self, "planner")
-        return Status.SUCCESS
+    KIND = "planner"
+    PORTS: ClassVar[dict[str, Port]] = _ports("planner")
 
 
-class ControllerSelector(Node):
+class ControllerSelector(_Selector):
     """Action node that outputs the last selected controller, or the default."""
 
     names = ("ControllerSelector",)
-    PORTS: ClassVar[dict[str, Port]] = {
-        "default_controller": Port(str),
-        "topic_name": Port(str, "controller_selector"),
-        "selected_controller": Port(str, output=True),
-    }
-
-    def update(self) -> Status:
-        """Return success."""
-        _choose(self, "controller")
-        return Status.SUCCESS
+    KIND = "controller"
+    PORTS: ClassVar[dict[str, Port]] = _ports("controller")
 
 
-def _choose(node: Node, kind: str) -> None:
-    """Read the selection from the blackboard under the topic's name, where the node writes received messages."""
-    chosen = node.ports.blackboard.get(node.ports.get("topic_name"))
-    node.ports.set(f"selected_{kind}", chosen or node.ports.get(f"default_{kind}"))
+class SmootherSelector(_Selector):
+    """Action node that outputs the last selected smoother, or the default."""
+
+    names = ("SmootherSelector",)
+    KIND = "smoother"
+    PORTS: ClassVar[dict[str, Port]] = _ports("smoother")
+
+
+class GoalCheckerSelector(_Selector):
+    """Action node that outputs the last selected goal checker, or the default."""
+
+    names = ("GoalCheckerSelector",)
+    KIND = "goal_checker"
+    PORTS: ClassVar[dict[str, Port]] = _ports("goal_checker")
+
+
+class ProgressCheckerSelector(_Selector):
+    """Action node that outputs the last selected progress checker, or the default."""
+
+    names = ("ProgressCheckerSelector",)
+    KIND = "progress_checker"
+    PORTS: ClassVar[dict[str, Port]] = _ports("progress_checker")

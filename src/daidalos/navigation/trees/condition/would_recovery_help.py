@@ -26,3 +26,12 @@ class WouldAControllerRecoveryHelp(WouldAPlannerRecoveryHelp):
     HELPED: ClassVar[frozenset[str]] = frozenset(
         {"UNKNOWN", "PATIENCE_EXCEEDED", "FAILED_TO_MAKE_PROGRESS", "NO_VALID_CONTROL"}
     )
+
+
+class WouldASmootherRecoveryHelp(WouldAPlannerRecoveryHelp):
+    """Condition node that succeeds for smoother errors that a recovery may resolve."""
+
+    names = ("WouldASmootherRecoveryHelp",)
+    HELPED: ClassVar[frozenset[str]] = frozenset(
+        {"UNKNOWN", "TIMEOUT", "FAILED_TO_SMOOTH_PATH", "SMOOTHED_PATH_IN_COLLISION"}
+    )

@@ -17,3 +17,11 @@ class ReactiveSequence(Sequence):
 
     names = ("ReactiveSequence",)
     reactive = True
+
+
+class SequenceWithMemory(InTurn):
+    """Control node that ticks children in order until one fails, and goes on with that one at the next tick."""
+
+    names = ("SequenceWithMemory", "SequenceStar")
+    goes_on_after = Status.SUCCESS
+    remembers = True

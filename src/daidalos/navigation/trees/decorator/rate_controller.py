@@ -32,10 +32,6 @@ class RateController(Decorator):
             self.status = self.update()
         yield self
 
-    def update(self) -> Status:
-        """Return the status of the child."""
-        return self.decorated.status
-
     def terminate(self, new_status: Status) -> None:
         """Reset after a halt."""
         if new_status == Status.INVALID:
