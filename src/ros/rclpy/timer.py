@@ -11,7 +11,7 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.exceptions import ROSInterruptException
-from rclpy.impl.errors import InvalidHandle, TimerCancelledError
+from rclpy.impl.errors import InvalidHandle
 from rclpy.impl.ready import ReadyHook
 from rclpy.impl.timer import TimerHandle
 from rclpy.time import Time
@@ -130,16 +130,11 @@ class Timer:
             return self.__timer.time_until_next_call()
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
-        timer = self.__timer
-        if timer.is_destroyed or not timer.is_timer_ready():
-            return None
-        try:
-            expected, actual = timer.call_timer()
-        except TimerCancelledError:
-            return None
-        if self._callback is None:
+        called = self.__timer.call_if_due()
+        if called is None or self._callback is None:
             return None
         if self._with_info:
+            expected, actual = called
             info = TimerInfo(expected_call_time=expected, actual_call_time=actual, clock_type=self._clock.clock_type)
             return self._callback, (info,)
         return self._callback, ()

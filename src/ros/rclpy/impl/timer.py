@@ -80,18 +80,36 @@ class TimerHandle(ReadyNotifier, Destroyable):
         TimerCancelledError
             When the timer is cancelled.
         """
+        called = self._call(early=True)
+        if called is None:
+            raise TimerCancelledError("Timer has been canceled")
+        return called
+
+    def call_if_due(self) -> tuple[int, int] | None:
+        """Record a call as `call_timer` does; return None when none is due or the timer is cancelled or destroyed."""
+        return self._call(early=False)
+
+    def _call(self, *, early: bool) -> tuple[int, int] | None:
+        clock = self.clock
         with self._lock:
-            if self._canceled:
-                raise TimerCancelledError("Timer has been canceled")
-            now = self.clock.now_ns()
-            expected = self._next_call
-            self._last_call = now
-            self._next_call += self._period
-            if self._next_call < now:
-                periods = -(-(now - self._next_call) // self._period) if self._period else 0
-                self._next_call = self._next_call + periods * self._period if self._period else now
-        self.reschedule()
-        return expected, now
+            now, due = clock.now_ns(), self._next_call
+            if self._canceled or (not early and (now < due or self._please_destroy)):
+                return None
+            following, period = due + self._period, self._period
+            if following < now:
+                following = following - (following - now) // period * period if period else now
+            self._last_call, self._next_call = now, following
+            self.version += 1
+            if self._please_destroy:
+                return due, now
+        schedule = self._schedule
+        if clock.overridden:
+            clock.schedule(following, self)
+        elif schedule is not None:
+            if clock.clock_type is not ClockType.STEADY_TIME:
+                following += time.monotonic_ns() - now
+            schedule(following, self)
+        return due, now
 
     def is_timer_ready(self) -> bool:
         """Return whether a call is due."""
