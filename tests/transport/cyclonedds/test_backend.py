@@ -152,3 +152,10 @@ def test_who_lacks_the_extra_is_told_the_command_that_adds_it(domain):
     environment = _environment(domain) | {"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, timeout=60)
     assert "pip install 'daidalos[dds]'" in done.stdout, done
+
+
+def test_what_a_node_over_dds_loads_is_small():
+    heavy = {"urllib.request", "http", "numpy"}
+    code = f"import sys, daidalos.transport.cyclonedds.backend; print(*{heavy} & set(sys.modules))"
+    loaded = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, check=True)
+    assert loaded.stdout == "\n"

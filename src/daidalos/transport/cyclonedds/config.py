@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from xml.sax.saxutils import quoteattr
+from html import escape  # xml.sax.saxutils loads urllib, http and email
 
 from daidalos.transport.cyclonedds.loopback import FIRST_PORT, PORTS_PER_DOMAIN, drops_what_others_send
 from daidalos.transport.environment import DiscoveryRange, Environment
@@ -63,7 +63,7 @@ def _peers(environment: Environment) -> str:
     ignores announcements that come over another interface.
     """
     highest = (_LAST_PORT - FIRST_PORT - PORTS_PER_DOMAIN * environment.domain - _DATA_PORT_OFFSET) // 2
-    listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (_LOCALHOST, *environment.static_peers))
+    listed = "".join(f'<Peer address="{escape(peer)}"/>' for peer in (_LOCALHOST, *environment.static_peers))
     return (
         f"<Discovery>{_REDISCOVERY}<ParticipantIndex>auto</ParticipantIndex>"
         f"<MaxAutoParticipantIndex>{min(_MAX_PARTICIPANTS, highest)}</MaxAutoParticipantIndex>"
