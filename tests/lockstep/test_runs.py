@@ -259,7 +259,7 @@ def test_ros2_launch_takes_the_options(tmp_path: Path) -> None:
 def test_sockets_hand_on_and_what_follows_the_real_time_is_named(tmp_path: Path) -> None:
     path = script(
         tmp_path,
-        "import os, select, signal, socket, sys, threading, time, uuid\n"
+        "import os, random, select, signal, socket, subprocess, sys, threading, time, uuid\n"
         "ours, theirs = socket.socketpair()\n"
         "begun = time.time()\n"
         "def peer():\n"
@@ -273,15 +273,27 @@ def test_sockets_hand_on_and_what_follows_the_real_time_is_named(tmp_path: Path)
         "except TimeoutError:\n"
         "    print('nothing', round(time.time() - begun, 1))\n"
         "print(select.select([ours], [], [], 2.5), round(time.time() - begun, 1))\n"
-        "print(time.clock_gettime(time.CLOCK_REALTIME) - time.time(), uuid.uuid1())\n"
-        "signal.alarm(0)\n",
+        "polled = select.poll()\n"
+        "polled.register(ours, select.POLLIN)\n"
+        "print(polled.poll(1500), round(time.time() - begun, 1))\n"
+        "print(time.clock_gettime(time.CLOCK_REALTIME) - time.time(), os.times().elapsed - time.monotonic(), "
+        "uuid.uuid1(), random.Random().random())\n"
+        "signal.alarm(0)\n"
+        "subprocess.run([sys.executable, '-c', ''])\n",
     )
     first, second = (run(sys.executable, path, folder=tmp_path) for _ in range(2))
     assert first.returncode == 0, first.stderr
     *lines, identifier = first.stdout.splitlines()
-    assert lines == ["b'hello' 1.0", "nothing 1.5", "([], [], []) 4.0"]
-    assert identifier.startswith("0.0 ")
+    assert lines == ["b'hello' 1.0", "nothing 1.5", "([], [], []) 4.0", "[] 5.5"]
+    assert identifier.startswith("0.0 0.0 ")
     assert first.stdout == second.stdout
-    for line, what in ((8, "socket.recv"), (11, "socket.recv"), (14, "select.select"), (16, "signal.alarm")):
+    for line, what in (
+        (8, "socket.recv"),
+        (11, "socket.recv"),
+        (14, "select.select"),
+        (17, "select.poll"),
+        (19, "signal.alarm"),
+        (20, "subprocess.Popen"),
+    ):
         expected = f"[lockstep] {path}:{line}: {what} of program.py follows the real time; from here on runs may differ"
         assert expected in first.stderr.splitlines()

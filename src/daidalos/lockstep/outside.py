@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import os
 import select
+import selectors  # noqa: F401  # it keeps the system's poll and epoll, as subprocess needs them
 import signal
 import socket
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -28,6 +30,7 @@ _POLL_NS = 10_000_000
 """Stepped time [ns] after which a thread looks at its socket again."""
 
 _LIBRARY = os.path.dirname(os.__file__)
+_PACKAGE = os.path.join(os.path.dirname(os.path.dirname(__file__)), "")
 
 
 class Outside:
@@ -52,6 +55,12 @@ class Outside:
                 setattr(module, name, self._receiver(getattr(module, name), name))
         selects: Any = select
         selects.select = self._select_in_steps
+        for name, unit_s in (("poll", 1e-3), ("epoll", 1.0)):
+            if hasattr(select, name):
+                setattr(select, name, self._maker_of_polls(getattr(select, name), f"select.{name}", unit_s))
+        processes: Any = subprocess.Popen
+        processes.__init__ = self._named_only(processes.__init__, "subprocess.Popen", is_ours_quiet=True)
+        os.system = self._named_only(os.system, "os.system")
         for name in ("setitimer", "alarm"):
             if hasattr(signal, name):
                 setattr(signal, name, self._named_only(getattr(signal, name), f"signal.{name}"))
@@ -65,7 +74,7 @@ class Outside:
     def _receiver(self, receive: Callable[..., Any], name: str) -> Callable[..., Any]:
         def wait_and_receive(self_: Any, *args: Any, **kwargs: Any) -> Any:
             limit = self_.gettimeout()
-            if limit != 0.0 and not self._wait([self_], [], [], limit, f"socket.{name}")[0]:
+            if limit != 0.0 and not self._select_for([self_], [], [], limit, f"socket.{name}")[0]:
                 raise TimeoutError("timed out")
             return receive(self_, *args, **kwargs)
 
@@ -73,44 +82,68 @@ class Outside:
         return wait_and_receive
 
     def _select_in_steps(self, read: Any, write: Any, failed: Any, timeout: float | None = None) -> Any:
-        return self._wait(read, write, failed, timeout, "select.select")
+        return self._select_for(read, write, failed, timeout, "select.select")
 
-    def _wait(self, read: Any, write: Any, failed: Any, limit_s: float | None, what: str) -> Any:
-        """Wait as `select.select` does, for at most so much stepped time."""
+    def _select_for(self, read: Any, write: Any, failed: Any, limit_s: float | None, what: str) -> Any:
+        return self.wait(lambda moment_s: self._select(read, write, failed, moment_s), limit_s, what)
+
+    def _maker_of_polls(self, make: Callable[..., Any], what: str, unit_s: float) -> Callable[..., Any]:
+        """Return what makes objects of ``select.poll`` or ``epoll``, whose times have a unit [s]."""
+
+        def call(*args: Any, **kwargs: Any) -> Any:
+            return _SteppedPoll(self, make(*args, **kwargs), what, unit_s)
+
+        return call
+
+    def wait(self, look: Callable[[float], Any], limit_s: float | None, what: str) -> Any:
+        """Wait as `select.select` does, for at most so much stepped time.
+
+        Parameters
+        ----------
+        look : callable
+            Of a real time [s] that it may wait; it returns a sequence, with something true in it where a wait ends.
+        limit_s : float or None
+        what : str
+            Name of what waits.
+        """
         scheduler = self._scheduler
-        found = self._select(read, write, failed, 0)
+        found = look(0.0)
         if any(found) or scheduler.current is None or scheduler.is_foreign or limit_s == 0:
             return found
         self._name(what)
         deadline = None if limit_s is None else scheduler.now_ns + max(round(1e9 * limit_s), 1)
         while deadline is None or scheduler.now_ns < deadline:
             scheduler.sleep_until(scheduler.now_ns)  # whoever can run at this instant may be the peer
-            found = self._select(read, write, failed, 0)
+            found = look(0.0)
             if not any(found) and not scheduler.is_anyone_ready:
-                found = self._wait_really(read, write, failed)
+                found = self._wait_really(look)
             if any(found):
                 return found
             following = scheduler.now_ns + _POLL_NS
             scheduler.sleep_until(following if deadline is None else min(following, deadline))
-        return self._select(read, write, failed, 0)
+        return look(0.0)
 
-    def _wait_really(self, read: Any, write: Any, failed: Any) -> Any:
+    def _wait_really(self, look: Callable[[float], Any]) -> Any:
         """Give other processes a moment."""
         moment = min(_REAL_WAIT_S, max(self._patience_s, 0.0))
-        found = self._select(read, write, failed, moment)
+        found = look(moment)
         self._patience_s = _PATIENCE_S if any(found) else self._patience_s - moment
         return found
 
-    def _named_only(self, function: Callable[..., Any], what: str) -> Callable[..., Any]:
+    def _named_only(
+        self, function: Callable[..., Any], what: str, *, is_ours_quiet: bool = False
+    ) -> Callable[..., Any]:
         def call(*args: Any, **kwargs: Any) -> Any:
-            self._name(what)
+            self._name(what, is_ours_quiet=is_ours_quiet)
             return function(*args, **kwargs)
 
         return call
 
-    def _name(self, what: str) -> None:
+    def _name(self, what: str, *, is_ours_quiet: bool = False) -> None:
         """Name the line of a program that uses something outside of the run, once."""
         frame = _first_own_frame(sys._getframe(1))
+        if is_ours_quiet and frame is not None and _is_ours(frame.f_code.co_filename):
+            return
         if frame is None or (where := (frame.f_code.co_filename, frame.f_lineno)) in self._named:
             return
         self._named.add(where)
@@ -124,7 +157,37 @@ def _first_own_frame(frame: FrameType | None) -> FrameType | None:
     """Return the first frame outside of this module and of Python's own library; None where there is none."""
     while frame is not None:
         file = frame.f_code.co_filename
-        if file != __file__ and (not file.startswith(_LIBRARY) or "site-packages" in file):
+        if file != __file__ and (not file.startswith((_LIBRARY, "<frozen ")) or "site-packages" in file):
             return frame
         frame = frame.f_back
     return None
+
+
+def _is_ours(file: str) -> bool:
+    """Return whether a file is of this package or of the launch system, which start what a run needs."""
+    launch = getattr(sys.modules.get("launch"), "__file__", None) or file
+    return file.startswith(_PACKAGE) or (launch != file and file.startswith(os.path.join(os.path.dirname(launch), "")))
+
+
+class _SteppedPoll:
+    """Object of ``select.poll`` or ``epoll`` that waits for the stepped time."""
+
+    def __init__(self, outside: Outside, real: Any, what: str, unit_s: float) -> None:
+        self._outside, self._real = outside, real
+        self._what, self._unit_s = what, unit_s
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._real, name)
+
+    def __enter__(self) -> _SteppedPoll:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._real.close()
+
+    def poll(self, timeout: float | None = None, *count: int) -> Any:
+        """Return what is ready, waiting for at most so much time in the unit of the original."""
+        limit_s = None if timeout is None or timeout < 0 else self._unit_s * timeout
+        return self._outside.wait(
+            lambda moment_s: self._real.poll(moment_s / self._unit_s, *count), limit_s, self._what
+        )

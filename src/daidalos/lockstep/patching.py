@@ -235,6 +235,7 @@ def _patch_clocks(scheduler: Scheduler) -> None:
         replacements[f"{name}_ns"] = read
     for name, value in replacements.items():
         setattr(time, name, value)
+    os.times = lambda: os.times_result((0.0, 0.0, 0.0, 0.0, 1e-9 * read()))
     for module in (subprocess, selectors):  # they wait for other processes
         for name in ("time", "_time"):
             if hasattr(module, name):
@@ -284,6 +285,12 @@ def _patch_random_numbers(hooks: Hooks) -> None:
     identifiers.getnode = lambda: _MACHINE_ADDRESS
     module: Any = random
     module._urandom = urandom
+    seed = random.Random.seed
+
+    def seed_by_program(self: random.Random, a: Any = None, version: int = 2) -> None:
+        seed(self, int.from_bytes(urandom(32)) if a is None else a, version)
+
+    module.Random.seed = seed_by_program
 
     def dispatch(name: str) -> Callable[..., Any]:
         def call(*args: Any, **kwargs: Any) -> Any:
