@@ -60,7 +60,8 @@ class LaunchDescriptionSource:
         """Return the description, loading it the first time."""
         if self.__expanded_location is None:
             location = perform_substitutions(context, self.__location)
-            self.__expanded_location = _beside_current_launch_file(location, context)
+            given = self.__loaded_from is None and self.__launch_description is not None
+            self.__expanded_location = location if given else _beside_current_launch_file(location, context)
         # It may have been loaded before launching, when the location meant another file.
         if self.__loaded_from not in (None, self.__expanded_location):
             self.__launch_description = None
@@ -89,8 +90,10 @@ class LaunchDescriptionSource:
 
 def _beside_current_launch_file(location: str, context: LaunchContext) -> str:
     """Find a relative path beside the launch file that mentions it, if it is not in the working folder."""
+    if location.startswith("<") or os.path.isabs(location) or os.path.exists(location):
+        return location  # the first is no file
     folder = context.get_locals_as_dict().get("current_launch_file_directory")
-    if isinstance(folder, str) and not os.path.isabs(location) and not os.path.exists(location):
+    if isinstance(folder, str):
         beside = os.path.join(folder, location)
         if os.path.exists(beside):
             return beside

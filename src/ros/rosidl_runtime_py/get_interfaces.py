@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from ament_index_python.packages import get_packages_with_prefixes
 from ament_index_python.search_paths import get_all_prefixes
 
 from daidalos.interfaces.library import BUILT_IN, InterfaceNotFound, Library
@@ -28,13 +29,15 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     Raises
     ------
     LookupError
-        When a package defines none.
+        When there is no such package; one without interfaces is left out.
     """
     library = interface_library()
     found = {}
     for package in package_names or library.packages():
         names = library.names(package)
         if not names:
+            if package in get_packages_with_prefixes():
+                continue
             raise LookupError(f"Unknown package '{package}'")
         found[package] = [name.removeprefix(f"{package}/") for name in names]
     return found

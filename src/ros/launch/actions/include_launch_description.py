@@ -118,11 +118,12 @@ class IncludeLaunchDescription(Action):
             perform_substitutions(context, normalize_to_list_of_substitutions(name))
             for name, _ in self.launch_arguments
         ]
+        # What the launch file around it has set does not count, as in ROS 2: an include passes its arguments on itself.
+        known = set(passed)
         declared = description.get_launch_arguments_with_include_launch_description_actions()
         for argument, includes in declared:
             if argument._conditionally_included or argument.default_value is not None:
                 continue
-            known = {*passed, *context.launch_configurations}
             for include in includes:
                 known.update(include._plain_argument_names())
             if argument.name not in known:

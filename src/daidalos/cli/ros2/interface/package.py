@@ -29,6 +29,8 @@ class PackageVerb(Verb):
             found = get_interfaces([args.package_name])
         except LookupError as error:
             raise CliError(f"{error}{did_you_mean(args.package_name, get_interface_packages())}") from None
+        if not found:
+            raise CliError(f"package '{args.package_name}' defines no interfaces")
         for package, names in wanted(found, args.kind).items():
             for name in sorted(names):
                 print(f"{package}/{name}")

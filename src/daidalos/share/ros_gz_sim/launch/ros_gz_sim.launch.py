@@ -1,16 +1,24 @@
 """The simulator, running at once, and a bridge."""
 
 from launch import LaunchDescription
-from launch.actions import IncludeLaunchDescription
-from launch.substitutions import PathJoinSubstitution
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
+
+BRIDGE = ("bridge_name", "config_file")
 
 
 def generate_launch_description():
-    parts = (("ros_gz_sim", "gz_server.launch.py"), ("ros_gz_bridge", "ros_gz_bridge.launch.py"))
     return LaunchDescription(
         [
-            IncludeLaunchDescription(PathJoinSubstitution([FindPackageShare(package), "launch", name]))
-            for package, name in parts
+            DeclareLaunchArgument("bridge_name", default_value="ros_gz_bridge", description="name of the bridge"),
+            DeclareLaunchArgument("config_file", description="YAML file with the bridges"),
+            IncludeLaunchDescription(
+                PathJoinSubstitution([FindPackageShare("ros_gz_sim"), "launch", "gz_server.launch.py"])
+            ),
+            IncludeLaunchDescription(
+                PathJoinSubstitution([FindPackageShare("ros_gz_bridge"), "launch", "ros_gz_bridge.launch.py"]),
+                launch_arguments=[(name, LaunchConfiguration(name)) for name in BRIDGE],
+            ),
         ]
     )
