@@ -126,6 +126,40 @@ def test_a_loop_is_closed_and_the_map_follows_in_pieces() -> None:
 
 
 @pytest.mark.slow
+def test_loops_are_closed_beside_the_scans() -> None:
+    """The search works on a copy while scans are added, and what they added moves with it."""
+    rng = np.random.default_rng(3)
+    corner = 8.2
+    ring = [[-corner, -corner], [corner, -corner], [corner, corner], [-corner, corner]]
+    true = drive(np.array([*ring, *ring[:2]]), rate=5.0)
+    odometry = wheel_odometry(true, rng, scale=0.02, noise=0.05)
+    lidar = Lidar(beams=360)
+    slam = Slam()
+    slam.defers_closing = True
+    corrections = moved = 0
+    snapshot = None
+    for k, pose in enumerate(true):
+        result = slam.add_scan(k * 200_000_000, lidar.scan(corridors(), pose, rng), odometry[k])
+        assert not result.closed
+        if k % 9 == 0:  # the search takes as long as nine scans
+            if snapshot is not None:
+                closed, has_moved = slam.apply(slam.find_correction(snapshot))
+                corrections, moved = corrections + closed, moved + has_moved
+            snapshot = slam.snapshot_to_close()
+    assert corrections > 3
+    assert moved >= 1
+    assert np.hypot(*(pose2.between(true[-1], pose2.compose(slam.map_to_odom, odometry[-1])))[:2]) < 0.1
+    assert len({(edge.first, edge.second) for edge in slam.edges}) == len(slam.edges)
+    slam.closing_is_due = True
+    snapshot = slam.snapshot_to_close()
+    assert snapshot is not None
+    before = slam.key_poses
+    slam.remove_keys([3])
+    assert slam.apply(slam.find_correction(snapshot)) == (False, False), "the graph is another since"
+    assert np.array_equal(np.delete(before, 3, axis=0), slam.key_poses)
+
+
+@pytest.mark.slow
 def test_a_featureless_corridor_is_not_compressed() -> None:
     """Nothing but odometry tells the way along it: the match must not hold the robot back."""
     rng = np.random.default_rng(1)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from daidalos.common import pose2
 from daidalos.common.arrays import Array
+from daidalos.mapping.back_end import Correction, GraphSnapshot, find_correction
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.grid import OccupancyGrid, ScanGrid
 from daidalos.mapping.loop_closing import LoopCloser
@@ -24,13 +25,6 @@ __all__ = ["ScanResult", "Slam", "SlamConfig"]
 
 MIN_POINTS = 10
 """Points that a scan must have to be matched."""
-
-TOLERATED_GAP = 0.05
-TOLERATED_TURN = 0.01
-"""Disagreement [m], [rad] between a closure and the poses so far up to which optimizing can wait."""
-
-BENT_GAP = 2.0
-"""Disagreement [m] from which the poses are too bent to start an optimization from them alone."""
 
 NEIGHBOURS = 10
 """Nearest key scans against which a robot that was put into the map is matched first."""
@@ -109,11 +103,16 @@ class Slam:
     ----------
     localizing : bool
         Whether the map stays as it is.
+    defers_closing : bool
+        Whether loops are closed by `close_loops`, or its three steps, and not by `add_scan`, which then takes a time
+        that does not grow with the graph.
+    closing_is_due : bool
+        Whether a key scan was added since loops were closed.
 
     Notes
     -----
-    Not safe for use from several threads at once. The map's frame is odometry's frame at the first scan, or that of
-    the saved map.
+    Not safe for use from several threads at once, `find_correction` excepted. The map's frame is odometry's frame at
+    the first scan, or that of the saved map.
     """
 
     def __init__(self, config: SlamConfig | None = None, saved: SavedGraph | None = None) -> None:
@@ -123,6 +122,9 @@ class Slam:
         self._poses = np.empty((64, 3))
         self._edges: list[Edge] = []
         self._closer = LoopCloser(self.config)
+        self.defers_closing = False
+        self.closing_is_due = False
+        self._revision = 0
         self._local: PointMap | None = None
         self._last_pose = np.zeros(3)
         self._last_odom = np.zeros(3)
@@ -272,7 +274,8 @@ class Slam:
             self._remember(cloud, odom)
             return ScanResult(match.pose, match.accepted, information=information, problem=problem)
         self._add_key(_KeyScan(odom, cloud), match)
-        closed, optimized = self._close_loops() if self.config.do_loop_closing else (False, False)
+        self.closing_is_due = self.config.do_loop_closing
+        closed, optimized = (False, False) if self.defers_closing else self.close_loops()
         self._last_pose = self.key_pose(len(self._keys) - 1)
         return ScanResult(self._last_pose, match.accepted, True, closed, optimized, information, problem)
 
@@ -307,6 +310,39 @@ class Slam:
             self._grid.add(cloud, pose)
         self._stale = [index for index in waiting[count:] if index < len(self._drawn)]
         return len(waiting) - count
+
+    def close_loops(self) -> tuple[bool, bool]:
+        """Find loop closures of the newest key scan; return whether there are any, and whether they moved poses."""
+        snapshot = self.snapshot_to_close()
+        return (False, False) if snapshot is None else self.apply(self.find_correction(snapshot))
+
+    def snapshot_to_close(self) -> GraphSnapshot | None:
+        """Return a copy of the graph for `find_correction`, None where no key scan was added since the last one."""
+        if not self.closing_is_due:
+            return None
+        self.closing_is_due = False
+        return GraphSnapshot(self.key_clouds, self.key_poses, self.edges, self._revision)
+
+    def find_correction(self, snapshot: GraphSnapshot) -> Correction | None:
+        """Search loop closures in a copy of the graph; another thread may call the other methods meanwhile."""
+        return find_correction(self._closer, snapshot)
+
+    def apply(self, correction: Correction | None) -> tuple[bool, bool]:
+        """Take over loop closures; return whether there were any, and whether they moved poses.
+
+        Key scans that were added since the copy was made move with the one before them. A correction of a graph whose
+        key scans were moved or removed since is left out; later scans find the closure again.
+        """
+        if correction is None or correction.snapshot.revision != self._revision:
+            return False, False
+        known = correction.snapshot
+        self._edges = [*correction.edges, *self._edges[len(known.edges) :]]
+        if correction.poses is None:
+            return True, False
+        since = self._poses[len(known.poses) : len(self._keys)]
+        moved = pose2.compose(correction.poses[-1], pose2.between(known.poses[-1], since))
+        self._move(np.concatenate([correction.poses, moved.reshape(-1, 3)]))
+        return True, True
 
     def finish(self) -> None:
         """Optimize all poses after the last scan."""
@@ -347,6 +383,7 @@ class Slam:
             self._session_begin -= index < self._session_begin
             self._neighbours = [one - (one > index) for one in self._neighbours if one != index]
             self._closer.forget(index)
+            self._revision += 1
         self._local = None
 
     def _begin(self, stamp_ns: int, scan: LaserScanData, odom: Array) -> ScanResult:
@@ -442,29 +479,12 @@ class Slam:
         self._keys.append(key)
         self._added_odom, self._local = key.odom_pose, None
 
-    def _close_loops(self) -> tuple[bool, bool]:
-        """Find loop closures of the newest key scan; return whether there are any, and whether they moved poses."""
-        poses = self._poses[: len(self._keys)]
-        closures = self._closer.search(self.key_clouds, poses, self._edges)
-        if not closures:
-            return False, False
-        self._edges.extend(closures)
-        measured = np.array([edge.measurement for edge in closures])
-        gaps = pose2.between(measured, pose2.between(poses[[edge.first for edge in closures]], poses[-1]))
-        gap, turn = np.hypot(gaps[:, 0], gaps[:, 1]).max(), np.abs(gaps[:, 2]).max()
-        if gap < TOLERATED_GAP and turn < TOLERATED_TURN:
-            return True, False
-        solution = optimize(poses, self._edges, chordal=bool(gap > BENT_GAP))
-        rejected = set(solution.rejected)
-        self._edges = [edge for k, edge in enumerate(self._edges) if k not in rejected]
-        self._move(solution.poses)
-        return True, True
-
     def _move(self, poses: Array) -> None:
         """Set the key scans to the optimized poses, and move the robot with the last one."""
         newest = len(self._keys) - 1
         on_newest = pose2.between(self._poses[newest], self._last_pose)
         self._poses[: newest + 1] = poses
+        self._revision += 1
         self._last_pose = pose2.compose(self._poses[newest], on_newest)
         self._local = None
         if self._drawn:

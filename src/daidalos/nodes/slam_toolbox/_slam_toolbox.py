@@ -136,7 +136,10 @@ class SlamToolbox(ManagedNode):
         """Return the library's object of a new map, or of a saved one."""
         from daidalos.mapping.slam import Slam
 
-        return Slam(self.settings, saved)
+        slam = Slam(self.settings, saved)
+        # Where every scan is used they wait for the loops, so that the same scans give the same map.
+        slam.defers_closing = not self.keeps_every_scan
+        return slam
 
     def _put_robot(self) -> None:
         """Set where the robot starts in the map, by the parameters: at a pose, or where the map begins."""
@@ -155,8 +158,10 @@ class SlamToolbox(ManagedNode):
         scans, transforms = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
         # A scan may wait for its odometry; the map and the services do not wait with it.
         self._pump = self.create_timer(0.0, self._work, scans, clock=self._steady)
+        self._closing = self.create_timer(0.0, self._close_loops, MutuallyExclusiveCallbackGroup(), clock=self._steady)
         self._timers_of_activity = [
             self._pump,
+            self._closing,
             self.create_timer(p.map_update_interval, self._publish_map),
             self.create_timer(_WATCH_PERIOD, self._watch, clock=self._steady),
         ]
@@ -242,10 +247,30 @@ class SlamToolbox(ManagedNode):
             result = self.slam.add_scan(nanoseconds(scan.header.stamp), data, pose2_of_transform(odometry.transform))
             self.map_to_odom = self.slam.map_to_odom if self.slam.key_count else None
             self._after_scan(result)
+        if self.slam.closing_is_due:
+            self._closing.reset()
         if result.problem:
             self._reports.report(result.problem.split(":")[0], f"a scan of '{frame}': {result.problem}")
         if result.matched or result.added:
             self._publish_pose(result, scan.header.stamp)
+
+    def _close_loops(self) -> None:
+        """Close loops of the newest key scan beside the scans that come meanwhile."""
+        self._closing.cancel()
+        with self.lock:
+            slam = self.slam
+            snapshot = None if slam is None else slam.snapshot_to_close()
+        if snapshot is None:
+            return
+        correction = slam.find_correction(snapshot)
+        with self.lock:
+            if self.slam is not slam:
+                return
+            _, has_moved = slam.apply(correction)
+            if has_moved:
+                self.map_to_odom = slam.map_to_odom
+        if slam.closing_is_due and self.is_active:
+            self._closing.reset()
 
     def _after_scan(self, result: Any) -> None:
         """Do what a kind of node does after each scan, with the lock held."""
