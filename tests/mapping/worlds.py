@@ -66,15 +66,17 @@ def cast(segments: Array, origin: Array, angles: Array, longest: float = 25.0) -
 
 def drive(corners: Array, *, speed: float = 0.5, turn_rate: float = 1.5, rate: float = 15.0) -> Array:
     """Poses (n, 3) of a robot that goes from corner to corner, turning on the spot at each."""
-    poses = [np.array([*corners[0], np.arctan2(*(corners[1] - corners[0])[::-1])])]
+    yaw = float(np.arctan2(*(corners[1] - corners[0])[::-1]))
+    legs = [np.array([[*corners[0], yaw]])]
     for start, end in pairwise(corners):
-        heading = np.arctan2(*(end - start)[::-1])
-        turn = (heading - poses[-1][2] + np.pi) % (2.0 * np.pi) - np.pi
-        steps = int(np.ceil(abs(turn) / turn_rate * rate))
-        poses += [np.array([*start, poses[-1][2] + turn / steps]) for _ in range(steps)]
-        steps = max(1, int(np.ceil(np.linalg.norm(end - start) / speed * rate)))
-        poses += [np.array([*(start + (end - start) * k / steps), heading]) for k in range(1, steps + 1)]
-    return np.array(poses)
+        heading = float(np.arctan2(*(end - start)[::-1]))
+        turn = (heading - yaw + np.pi) % (2.0 * np.pi) - np.pi
+        yaws = yaw + np.linspace(0.0, turn, int(np.ceil(abs(turn) / turn_rate * rate)) + 1)[1:]
+        legs.append(np.column_stack([np.tile(start, (len(yaws), 1)), yaws]))
+        way = np.linspace(start, end, max(1, int(np.ceil(np.linalg.norm(end - start) / speed * rate))) + 1)[1:]
+        legs.append(np.column_stack([way, np.full(len(way), heading)]))
+        yaw = heading
+    return np.concatenate(legs)
 
 
 def wheel_odometry(truth: Array, rng: np.random.Generator, *, scale: float = 0.01, noise: float = 0.02) -> Array:
