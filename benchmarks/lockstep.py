@@ -107,7 +107,8 @@ class _Figures(dict[str, float | str]):
 
     def __setitem__(self, name: str, value: float | str) -> None:
         super().__setitem__(name, value)
-        print(f"  {name}: {value:.4g}" if isinstance(value, float) else f"  {name}: {value}", flush=True)
+        text = f"{value:.4g}" if isinstance(value, float) else value
+        print(f"  {name}: {text}", file=sys.stderr, flush=True)
 
 
 def _cost_of_loop(folder: Path, text: str, *, in_lockstep: bool) -> float:
