@@ -1,17 +1,15 @@
 """Fixtures that every test may use."""
 
-import itertools
 import os
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
 
 import hypothesis
 import pytest
 
-from places import MACHINE_TEMPORARY, REPOSITORY
+from domains import reserved_domain
+from places import REPOSITORY
 from properties import FULL
 
 # Options meant for this run are not for the pytest that a test starts, which may know other plugins.
@@ -21,8 +19,6 @@ os.environ.pop("PYTEST_ADDOPTS", None)
 hypothesis.settings.register_profile("daidalos", max_examples=FULL, deadline=None)
 hypothesis.settings.register_profile("quick", max_examples=FULL // 5, deadline=None)
 hypothesis.settings.load_profile("daidalos")
-
-_numbers = itertools.count(os.getpid())
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -80,27 +76,5 @@ def _folders_of_the_run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[No
 @pytest.fixture
 def domain() -> Iterator[int]:
     """A ROS domain that no other test of any run on this machine has at the same time."""
-    folder = MACHINE_TEMPORARY / "daidalos-test-domains"
-    folder.mkdir(exist_ok=True)
-    for number in (100 + next(_numbers) % 100 for _ in range(100)):
-        with (folder / str(number)).open("a") as file:
-            if _is_reserved(file):
-                yield number
-                return
-    pytest.fail("all of a hundred domains are taken")
-
-
-def _is_reserved(file: IO[str]) -> bool:
-    """Lock a file until it is closed; tell whether nobody else had."""
-    try:
-        if sys.platform == "win32":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True
+    with reserved_domain() as number:
+        yield number

@@ -1,6 +1,5 @@
 """A domain of its own for every test that runs commands, and programs that run beside them."""
 
-import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -17,9 +16,9 @@ Env = dict[str, str]
 
 
 @pytest.fixture
-def env(request: pytest.FixtureRequest) -> Env:
+def env(domain: int) -> Env:
     """An environment with a domain that no other test uses at the same time."""
-    return environment(2 + (os.getpid() * 7 + hash(request.node.nodeid)) % 18)
+    return environment(domain)
 
 
 @pytest.fixture
@@ -61,6 +60,6 @@ def wait_for(env: Env) -> Iterator[Callable[[str], None]]:
     with _graph(int(env["ROS_DOMAIN_ID"])) as graph:
 
         def wait(name: str) -> None:
-            assert graph.wait_for(lambda: bool(graph.endpoints(name=name)), 20), f"{name} did not come"
+            assert graph.wait_for(lambda: bool(graph.endpoints(name=name)), 60), f"{name} did not come"
 
         yield wait

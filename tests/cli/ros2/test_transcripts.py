@@ -7,10 +7,13 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from domains import reserved_domain
 
 from .commands import Result, environment, ros2
 
@@ -19,7 +22,6 @@ pytestmark = pytest.mark.slow
 _SHARED = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[4] / "shared" / "data"))
 _FILE = _SHARED / "cli" / "transcripts.json"
 TRANSCRIPTS = json.loads(_FILE.read_text()) if _FILE.is_file() else []
-DOMAIN = 20 + 4 * (os.getpid() % 50)
 
 PARAMETERS = "/talker:\n  ros__parameters:\n    speed: 2.0\n    names: [c, d]\n    gains: {p: 0.2}\n"
 WILDCARD_PARAMETERS = "/**:\n  ros__parameters:\n    speed: 1.0\n"
@@ -53,19 +55,23 @@ def results(tmp_path_factory: pytest.TempPathFactory, shared_data: Path) -> Iter
     (folder / "p.yaml").write_text(PARAMETERS)
     (folder / "q.yaml").write_text(WILDCARD_PARAMETERS)
     program = [sys.executable, shared_data / "cli" / "nodes.py"]
-    nodes = [subprocess.Popen(program, env=environment(DOMAIN + lane)) for lane in (0, 1, WAITING)]
-    try:
-        for lane in (0, 1, WAITING):
-            _wait_for_nodes(DOMAIN + lane)
-        yield _run_all(folder)
-    finally:
-        for process in nodes:
-            process.terminate()
-        for process in nodes:
-            process.wait(10)
+    with ExitStack() as reserved:
+        domains = [reserved.enter_context(reserved_domain()) for _ in range(4)]
+        nodes = [subprocess.Popen(program, env=environment(domains[lane])) for lane in (0, 1, WAITING)]
+        try:
+            for lane in (0, 1, WAITING):
+                _wait_for_nodes(domains[lane])
+            started = ros2("daemon", "start", env=environment(domains[LANES["daemon"]]))  # transcripts find it running
+            assert started.status == 0, started
+            yield _run_all(folder, domains)
+        finally:
+            for process in nodes:
+                process.terminate()
+            for process in nodes:
+                process.wait(10)
 
 
-def _run_all(folder: Path) -> dict[int, Result]:
+def _run_all(folder: Path, domains: list[int]) -> dict[int, Result]:
     jobs: dict[tuple[int, int], list[int]] = {}
     for number, transcript in enumerate(TRANSCRIPTS):
         waits = "interrupted_after_s" in transcript
@@ -75,7 +81,7 @@ def _run_all(folder: Path) -> dict[int, Result]:
     found: dict[int, Result] = {}
 
     def run(job: tuple[int, int]) -> None:
-        env = environment(DOMAIN + job[0])
+        env = environment(domains[job[0]])
         for number in jobs[job]:
             transcript = TRANSCRIPTS[number]
             lines = None
@@ -98,7 +104,7 @@ def _wait_for_nodes(domain: int) -> None:
     node = Node("_waiting", context=context)
     try:
         graph = node.handle.graph
-        assert graph.wait_for(lambda: bool(graph.endpoints(name="/lab/fibonacci/_action/feedback")), 20)
+        assert graph.wait_for(lambda: bool(graph.endpoints(name="/lab/fibonacci/_action/feedback")), 60)
     finally:
         node.destroy_node()
         context.destroy()

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from daidalos.transport.graph import Graph
 
 _START_TIMEOUT_S = 10.0
+_STATUS_TIMEOUT_S = 5.0
+"""A daemon that has ended refuses at once; one on a loaded machine answers late."""
 
 
 def fetch_graph() -> Graph | None:
@@ -22,7 +24,7 @@ def fetch_graph() -> Graph | None:
 
 def is_running() -> bool:
     """Return whether the daemon runs."""
-    return _ask("status") is not None
+    return _ask("status", _STATUS_TIMEOUT_S) is not None
 
 
 def start(debug: bool = False) -> bool:
@@ -45,7 +47,7 @@ def start(debug: bool = False) -> bool:
 
 def keep() -> bool:
     """Keep an automatically started daemon running as if started explicitly; return False if none runs."""
-    return _ask("stay") is not None
+    return _ask("stay", _STATUS_TIMEOUT_S) is not None
 
 
 def start_in_background() -> None:
