@@ -1,7 +1,6 @@
 """Every command of the course's pages, typed, and what it prints compared with what the page says."""
 
 import shutil
-import zlib
 
 import pytest
 
@@ -16,7 +15,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(_LONGEST_S)]
 
 
 @pytest.fixture
-def follow(tmp_path):
+def follow(tmp_path, domain):
     """Follows pages, one after the other, in a home folder with an empty workspace."""
     pytest.importorskip("termios")
     from terminals import Terminal, environment
@@ -26,7 +25,6 @@ def follow(tmp_path):
     readers = []
 
     def follow_pages(names):
-        domain = 1 + zlib.crc32(str(tmp_path).encode()) % 100
         mismatches = []
         for name in names:
             page = pages.read(COURSE / name)
