@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Protocol
 
 from rclpy.constants import S_TO_NS
@@ -83,7 +84,7 @@ class Duration:
 
     def __mul__(self, factor: Any) -> Any:
         if isinstance(factor, (int, float)):
-            return Duration(nanoseconds=int(self._nanoseconds * factor))
+            return Infinite if factor == math.inf else Duration(nanoseconds=int(self._nanoseconds * factor))
         return NotImplemented
 
     __rmul__ = __mul__

@@ -368,10 +368,20 @@ class MultiThreadedExecutor(Executor):
                 if self._active == 0:
                     self._idle.notify_all()
 
-    def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stop, after the callbacks that run have ended; see `Executor.shutdown`."""
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Stop, after the callbacks that run have ended; see `Executor.shutdown`.
+
+        Parameters
+        ----------
+        timeout_sec
+            Time in which they must end, in seconds.
+        wait_for_threads
+            Whether to wait until the threads have ended too, unless a callback has not ended in time.
+        """
         ended = super().shutdown(timeout_sec)
         self._executor.close()
+        if ended and wait_for_threads:
+            self._executor.join()
         return ended
 
 

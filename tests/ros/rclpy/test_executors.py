@@ -465,3 +465,11 @@ def test_an_executor_of_ones_own_replaces_spin_once_alone(node: Node) -> None:
     assert set(executor.ran) == {node.get_name()}
     assert len(executor.ran) >= 2
     executor.shutdown()
+
+
+def test_threads_have_ended_after_the_shutdown(node: Node) -> None:
+    before = set(threading.enumerate())
+    executor = MultiThreadedExecutor(2)
+    executor.spin_until_future_complete(executor.create_task(lambda: None), 60.0)
+    assert executor.shutdown(wait_for_threads=True)
+    assert {one for one in threading.enumerate() if one.name == "rclpy"} <= before

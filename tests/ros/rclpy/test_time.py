@@ -373,3 +373,9 @@ def test_a_negative_time_is_ignored(simulator: Simulator, simulated: Node, node:
     assert simulated.get_clock().now().nanoseconds == 5 * MS
     simulator.advance(1 * MS)
     assert simulated.get_clock().now().nanoseconds == 6 * MS
+
+
+def test_a_duration_without_end() -> None:
+    assert Duration(seconds=2) * float("inf") == Infinite
+    with pytest.raises(ValueError, match="NaN"):
+        Duration(seconds=2) * float("nan")

@@ -21,6 +21,7 @@ class ThreadPool:
         self._load = 0  # functions that wait for a thread or are carried out, those that are blocked excepted
         self._blocked = 0
         self._closed = False
+        self._alive: set[threading.Thread] = set()
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> None:
         """Run a function, which must raise nothing, in a thread of the pool."""
@@ -32,9 +33,18 @@ class ThreadPool:
     def _grow(self) -> None:
         if self._threads < min(self._load, self._max_workers) and not self._closed:
             self._threads += 1
-            threading.Thread(target=self._run, name="rclpy", daemon=True).start()
+            thread = threading.Thread(target=self._run, name="rclpy", daemon=True)
+            self._alive.add(thread)
+            thread.start()
 
     def _run(self) -> None:
+        try:
+            self._work_on()
+        finally:
+            with self._lock:
+                self._alive.discard(threading.current_thread())
+
+    def _work_on(self) -> None:
         while True:
             item = self._work.get()
             if item is None:
@@ -71,6 +81,13 @@ class ThreadPool:
             self._closed = True
             for _ in range(self._threads + self._blocked):
                 self._work.put(None)
+
+    def join(self) -> None:
+        """Wait until the threads have ended, after `close`; the calling thread may be one of them."""
+        with self._lock:
+            threads = self._alive - {threading.current_thread()}
+        for thread in threads:
+            thread.join()
 
 
 def processors() -> int:
