@@ -63,14 +63,14 @@ def _panel(title: str, values: dict[int, float]) -> str:
     points = [(width * count / right, height * (1.0 - value / top), value) for count, value in values.items()]
     marks = "".join(
         f"<circle cx='{x:.1f}' cy='{y:.1f}' r='3' fill='#0a5'/>"
-        f"<text x='{x - 6:.1f}' y='{y - 6:.1f}' text-anchor='end'>{value:.3g}</text>"
+        f"<text x='{x - 6:.1f}' y='{y - 6:.1f}' text-anchor='end'>{value:{'.0f' if value >= 100.0 else '.3g'}}</text>"
         for x, y, value in points
     )
     ticks = "".join(
         f"<text x='{width * count / right:.1f}' y='{height + 16:g}' text-anchor='middle'>{count}</text>"
         for count in values
     )
-    line = " ".join(f"{x:.1f},{y:.1f}" for x, y, _ in [(0.0, height, 0.0), *points][1:])
+    line = " ".join(f"{x:.1f},{y:.1f}" for x, y, _ in points)
     return (
         f"<text x='0' y='-20'>{title}</text><path d='M0 0V{height:g}H{width:g}' fill='none' stroke='#888'/>"
         f"<polyline points='{line}' fill='none' stroke='#0a5'/>{marks}{ticks}"
