@@ -1,7 +1,10 @@
+import threading
+
 import pytest
 import trimesh
 
 from daidalos.description import sdf
+from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Mesh
 from daidalos.description.meshes import load_mesh
 from daidalos.simulation import Simulation
@@ -27,7 +30,6 @@ def rings(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_is_prepared_is_what_is_used(rings, monkeypatch):
     prepared = prepare_meshes(rings.models)
     shape = rings.models[1].links["l"].collisions[0].geometry
@@ -45,7 +47,6 @@ def test_what_is_prepared_is_what_is_used(rings, monkeypatch):
     assert "broken.stl" in simulation.warnings[0]
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_progress_is_reported(rings, monkeypatch):
     monkeypatch.setattr(preparation, "REPORT_DELAY", 0.0)
@@ -75,7 +76,27 @@ def test_a_request_to_end_ends_the_work(rings, monkeypatch):
         prepare_meshes(rings.models, is_cancelled=lambda: next(asked))
 
 
-@pytest.mark.slow
+def test_a_mesh_that_is_still_read_is_abandoned(rings, monkeypatch):
+    monkeypatch.setattr(preparation, "_CHECK_PERIOD", 1e-3)
+    reading, release = threading.Event(), threading.Event()
+
+    def read(shape):
+        reading.set()
+        release.wait()
+        raise DescriptionError("read too late")
+
+    monkeypatch.setattr(preparation, "triangles_of", read)
+    with pytest.raises(SimulationError, match="cancelled"):
+        prepare_meshes(rings.models, is_cancelled=reading.is_set)
+    assert not release.is_set()
+    workers = [thread for thread in threading.enumerate() if thread.name.startswith("meshes_")]
+    assert workers
+    assert all(thread.daemon for thread in workers)  # the end of the process does not wait for them
+    release.set()
+    for thread in workers:
+        thread.join()
+
+
 @pytest.mark.slow
 def test_spawning_reports_progress_and_takes_what_is_prepared(rings, monkeypatch):
     monkeypatch.setattr(preparation, "REPORT_DELAY", 0.0)

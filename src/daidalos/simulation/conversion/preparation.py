@@ -6,8 +6,9 @@ import os
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, wait
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Cone, Geometry, Mesh, Polyline
@@ -31,6 +32,9 @@ Parts = tuple[list[TriangleMesh], bool]
 
 PreparedMeshes = dict[tuple[str, bool], Parts]
 """Convex parts of meshes, from each mesh's `content_key` and whether it was to be decomposed."""
+
+_Prepared = tuple[tuple[str, bool], Parts] | None
+"""What is prepared of one shape; None for a mesh that can not be read."""
 
 
 def is_decomposed(shape: Mesh | Cone | Polyline, static: bool) -> bool:
@@ -69,14 +73,35 @@ def prepare_meshes(
     if not shapes:
         return {}
     cancelled = threading.Event()
-    pool = ThreadPoolExecutor(min(_cores(), MAX_THREADS, len(shapes)), "meshes")
+    jobs = deque((Future[_Prepared](), shape, decompose) for shape, decompose in shapes)
+    futures = [future for future, _, _ in jobs]
+    # Daemon threads, since the reading of a mesh cannot be interrupted: a process that ends leaves them behind.
+    threads = [
+        threading.Thread(target=_work, args=(jobs, cancelled), name=f"meshes_{number}", daemon=True)
+        for number in range(min(_cores(), MAX_THREADS, len(shapes)))
+    ]
     try:
-        futures = [pool.submit(_prepare, shape, decompose, cancelled) for shape, decompose in shapes]
+        for thread in threads:
+            thread.start()
         _wait(futures, progress, is_cancelled)
+        for thread in threads:
+            thread.join()
         return dict(result for future in futures if (result := future.result()) is not None)
     finally:
         cancelled.set()
-        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _work(jobs: deque[tuple[Future[_Prepared], Geometry, bool]], cancelled: threading.Event) -> None:
+    """Prepare meshes until none is left or the preparation is cancelled."""
+    while not cancelled.is_set():
+        try:
+            future, shape, decompose = jobs.popleft()
+        except IndexError:
+            return
+        try:
+            future.set_result(_prepare(shape, decompose, cancelled))
+        except BaseException as problem:  # raised again where the result is taken
+            future.set_exception(problem)
 
 
 def _cores() -> int:
@@ -92,7 +117,7 @@ def _shapes(models: Iterable[Model]) -> Iterator[tuple[Geometry, bool]]:
                     yield collision.geometry, is_decomposed(collision.geometry, model.static or link.static)
 
 
-def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> tuple[tuple[str, bool], Parts] | None:
+def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> _Prepared:
     if cancelled.is_set():
         return None
     try:
@@ -104,12 +129,12 @@ def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> tu
 
 
 def _wait(
-    futures: list[Future[tuple[tuple[str, bool], Parts] | None]],
+    futures: list[Future[_Prepared]],
     progress: Progress | None,
     is_cancelled: Callable[[], bool],
 ) -> None:
     due = time.monotonic() + REPORT_DELAY
-    waiting: set[Future[tuple[tuple[str, bool], Parts] | None]] = set(futures)
+    waiting: set[Future[_Prepared]] = set(futures)
     while waiting:
         waiting = wait(waiting, _CHECK_PERIOD).not_done
         if waiting and is_cancelled():
