@@ -37,7 +37,6 @@ _SENSORS = (
         sensors.CameraInfoSample,
         "sensor_msgs/CameraInfo",
         {
-            "distortion_model": lambda sample: "plumb_bob",
             "d": "distortion",
             "k": "matrix",
             "r": lambda sample: np.eye(3),

@@ -106,19 +106,22 @@ class CameraInfoSample(Sample):
     ----------
     width, height : int
         [pixels].
-    distortion : tuple of 5 floats
-        k1, k2, p1, p2, k3 (``plumb_bob``).
+    distortion : tuple of floats
+        Coefficients of the distortion model: k1, k2, p1, p2, k3 of ``plumb_bob``, k1 to k4 of ``equidistant``.
     matrix : array (3, 3)
         Of the raw image.
     projection : array (3, 4)
         Of the rectified image.
+    distortion_model : str
+        ROS's name; empty, with matrices of zeros, for an uncalibrated camera.
     """
 
     width: int
     height: int
-    distortion: tuple[float, float, float, float, float]
+    distortion: tuple[float, ...]
     matrix: Array
     projection: Array
+    distortion_model: str = "plumb_bob"
 
 
 @dataclass(frozen=True, eq=False)

@@ -91,9 +91,7 @@ class CameraRenderer:
             bent = np.empty((pinhole.height, pinhole.width, 3), dtype=np.uint8)
             distort(picture, pinhole.lookup, bent)
             picture = bent
-        if self.settings.noise.stddev or self.settings.noise.mean:
-            table = _noise_table(self.settings.noise.mean, self.settings.noise.stddev)
-            add_noise(picture.reshape(-1), table, start % _NOISE_TABLE)
+        apply_noise(picture, self.settings.noise, start)
         return picture
 
     def depth(self, near: float = 0.0, far: float = np.inf) -> NDArray[np.float32]:
@@ -111,6 +109,12 @@ class CameraRenderer:
         bent = np.empty((pinhole.height, pinhole.width), dtype=ideal.dtype)
         pick(ideal, pinhole.lookup, bent)
         return bent
+
+
+def apply_noise(picture: NDArray[np.uint8], noise: Noise, start: int) -> None:
+    """Add noise to a picture in place, from a place of a table on."""
+    if noise.stddev or noise.mean:
+        add_noise(picture.reshape(-1), _noise_table(noise.mean, noise.stddev), start % _NOISE_TABLE)
 
 
 @lru_cache(maxsize=4)

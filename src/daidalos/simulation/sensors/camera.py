@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
 from daidalos.samples.commands import FlagCommand, SignalCommand
@@ -83,28 +85,27 @@ class Camera(Sensor):
     Attributes
     ----------
     outputs : list of CameraOutput
+    elements : list of Element
+        The ``<camera>`` of each output.
     trigger : tuple of (str, type) or None
         The topic, and the class of its commands, that makes it look; None where it looks by itself.
     """
 
     state: Trigger
 
-    names = (
+    names: ClassVar[tuple[str, ...]] = (
         *("camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "multicamera"),
-        *("segmentation", "segmentation_camera", "wideanglecamera"),
+        *("segmentation", "segmentation_camera"),
     )
     default_topic = "image"
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         self.kind = description.type.removesuffix("_camera")
         super().__init__(description, context)
-        if self.kind == "wideanglecamera":
-            context.warn(f"{description.element.where}: sensor {self.name!r}: its lens is drawn as a pinhole")
-        elements = description.element.all("camera") or [Element("camera")]
-        for element in elements:
-            if (angle := element.number_of("horizontal_fov", default=0.0)) > WIDEST:
-                context.warn(f"{element.where}: <horizontal_fov> is {angle:g}, a pinhole shows {WIDEST:.3g} rad of it")
-        self.outputs = [self._output(element, several=len(elements) > 1) for element in elements]
+        self.elements = description.element.all("camera") or [Element("camera")]
+        self.outputs = [self._output(element, several=len(self.elements) > 1) for element in self.elements]
+        for element in self.elements:
+            self._check(element)
         for output in self.outputs[1:]:
             # To the right of the first camera, as a stereo pair's projection matrices tell it.
             output.baseline = -(self.outputs[0].settings.pose.inverse @ output.settings.pose).position[1]
@@ -178,22 +179,22 @@ class Camera(Sensor):
         return output
 
     def _capture(self, number: int, output: CameraOutput, wanted: set[str], now_ns: int) -> Iterable[Sample]:
-        settings = output.settings
-        seen = wanted - set(output.infos)
-        if seen:
-            renderer = self._renderer(number)
-            renderer.render(self.instance.physics, self.link.pose @ self.pose @ settings.pose)
-            yield from self._pictures(renderer, number, output, wanted, now_ns)
+        if wanted - set(output.infos):
+            pose = self.link.pose @ self.pose @ output.settings.pose
+            yield from self._pictures(number, output, wanted, pose, now_ns)
         for topic in output.infos:
             if topic in wanted:
-                yield _info(output, topic, now_ns)
+                yield self._info(number, topic, now_ns)
 
     def _pictures(
-        self, renderer: CameraRenderer, number: int, output: CameraOutput, wanted: set[str], now_ns: int
+        self, number: int, output: CameraOutput, wanted: set[str], pose: Pose, now_ns: int
     ) -> Iterable[Sample]:
+        """Render an output from a pose in the world and return what is wanted of it."""
         from daidalos.simulation.rendering.camera_renderer import encode
 
         settings = output.settings
+        renderer = self._renderer(number)
+        renderer.render(self.instance.physics, pose)
         colored = output.points in wanted
         picture = None
         if output.image in wanted or colored:
@@ -208,6 +209,15 @@ class Camera(Sensor):
                 yield self._points(number, output, depth, picture, now_ns)
         if output.labels in wanted or output.colored_labels in wanted:
             yield from self._segments(renderer, output, wanted, now_ns)
+
+    def _info(self, number: int, topic: str, now_ns: int) -> CameraInfoSample:
+        pinhole = self.outputs[number].settings.pinhole
+        return info_of(self.outputs[number], topic, now_ns, "plumb_bob", pinhole.distortion, pinhole.matrix)
+
+    def _check(self, element: Element) -> None:
+        """Warn where a pinhole cannot show what a ``<camera>`` asks for."""
+        if (angle := element.number_of("horizontal_fov", default=0.0)) > WIDEST:
+            self.context.warn(f"{element.where}: <horizontal_fov> is {angle:g}, a pinhole shows {WIDEST:.3g} rad of it")
 
     def _depth(self, renderer: CameraRenderer, settings: CameraSettings) -> NDArray[np.float32]:
         """Return depths with noise; out-of-range values are marked as in REP 118."""
@@ -284,27 +294,30 @@ class Camera(Sensor):
         return self._renderers[number]
 
 
-def set_noise(output: CameraOutput, stddev: float) -> None:
-    """Set the noise by a standard deviation in shares of full brightness."""
-    output.settings = replace(output.settings, noise=replace(output.settings.noise, stddev=stddev))
-
-
-def _info(output: CameraOutput, topic: str, now_ns: int) -> CameraInfoSample:
-    pinhole = output.settings.pinhole
+def info_of(
+    output: CameraOutput, topic: str, now_ns: int, model: str, distortion: tuple[float, ...], matrix: Array
+) -> CameraInfoSample:
+    """Return the calibration of an output from its distortion model, coefficients and matrix K (3, 3)."""
     projection = np.zeros((3, 4))
-    projection[:, :3] = pinhole.matrix
-    projection[0, 3] = -pinhole.fx * output.baseline + output.settings.tx
+    projection[:, :3] = matrix
+    projection[0, 3] = -matrix[0, 0] * output.baseline + output.settings.tx
     projection[1, 3] = output.settings.ty
     return CameraInfoSample(
         stamp_ns=now_ns,
         topic=topic,
         frame_id=output.frame_id,
-        width=pinhole.width,
-        height=pinhole.height,
-        distortion=pinhole.distortion,
-        matrix=pinhole.matrix,
+        width=output.settings.pinhole.width,
+        height=output.settings.pinhole.height,
+        distortion=distortion,
+        matrix=matrix,
         projection=projection,
+        distortion_model=model,
     )
+
+
+def set_noise(output: CameraOutput, stddev: float) -> None:
+    """Set the noise by a standard deviation in shares of full brightness."""
+    output.settings = replace(output.settings, noise=replace(output.settings.noise, stddev=stddev))
 
 
 def _instances(labels: NDArray[np.int32], owners: NDArray[np.int32]) -> NDArray[np.int32]:
