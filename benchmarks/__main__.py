@@ -90,7 +90,7 @@ def _text(value: Any) -> str:
 
 
 def machine() -> dict[str, Any]:
-    """Tell where this was measured."""
+    """Return where this was measured."""
     return {"system": platform.platform(), "python": platform.python_version(), "cores": os.cpu_count()}
 
 

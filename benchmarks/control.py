@@ -132,7 +132,7 @@ class Rig:
 
 
 def loop_in_simulation(rate: int, seconds: int = 10) -> dict[str, float]:
-    """Let the arm swing for a while."""
+    """Simulate the arm swinging for a while."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "parameters.yaml"
         file.write_text(f"controller_manager:\n  ros__parameters:\n    update_rate: {rate}\n", encoding="utf-8")

@@ -8,7 +8,7 @@ from daidalos.nodes.gazebo_ros._command_line import parse
 
 @pytest.fixture
 def started(monkeypatch):
-    """Note what would be started."""
+    """Record what would be started."""
     found = []
     monkeypatch.setattr(commands, "_run", lambda *words, with_view: found.append((*words, with_view)) or 0)
     return found

@@ -109,8 +109,8 @@ def _options(path: Path, env: tuple[tuple[str, str], ...]) -> Mapping[str, Any]:
     return found
 
 
-def _fault(complaint: str) -> tuple[str, int | None]:
+def _fault(error_text: str) -> tuple[str, int | None]:
     """Return the error that a failing setup.py ends with, and the line at fault that it names."""
-    lines = re.findall(r'File "setup\.py", line (\d+)', complaint)
-    errors = re.findall(r"^[\w.]+: .*", complaint, re.MULTILINE) or [line for line in complaint.splitlines() if line]
+    lines = re.findall(r'File "setup\.py", line (\d+)', error_text)
+    errors = re.findall(r"^[\w.]+: .*", error_text, re.MULTILINE) or [line for line in error_text.splitlines() if line]
     return (errors[-1] if errors else "it does not call setup()"), (int(lines[-1]) if lines else None)

@@ -28,13 +28,13 @@ class _Paced(Decorator):
         yield self
 
     def _begin(self) -> None:
-        """Begin anew after a halt."""
+        """Start again after a halt."""
 
     def _is_due(self) -> bool:
         raise NotImplementedError
 
     def _done(self) -> None:
-        """Note that the child has succeeded."""
+        """Record that the child has succeeded."""
 
 
 class SingleTrigger(_Paced):
