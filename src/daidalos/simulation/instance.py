@@ -61,9 +61,8 @@ class LinkView:
         spin_up : array (3,)
             Angular acceleration [rad/s^2].
         """
-        self.physics.refresh()
+        self.physics.refresh_loads()
         model, data = self.physics.model, self.physics.data
-        mujoco.mj_rnePostConstraint(model, data)
         motion, change = np.zeros(6), np.zeros(6)
         mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, self.body, motion, 1)
         mujoco.mj_objectAcceleration(model, data, mujoco.mjtObj.mjOBJ_XBODY, self.body, change, 1)

@@ -97,7 +97,7 @@ class Physics:
 
     def changed(self) -> None:
         """Mark everything derived from the state as out of date."""
-        self._positions_fresh = self._velocities_fresh = self._all_fresh = False
+        self._positions_fresh = self._velocities_fresh = self._all_fresh = self._loads_fresh = False
 
     def refresh_positions(self) -> None:
         """Update the poses of bodies and geoms."""
@@ -118,6 +118,13 @@ class Physics:
         if not self._all_fresh:
             mujoco.mj_forward(self.model, self.data)
             self._positions_fresh = self._velocities_fresh = self._all_fresh = True
+
+    def refresh_loads(self) -> None:
+        """Update everything, with the accelerations of bodies and the forces between them, once for all sensors."""
+        if not self._loads_fresh:
+            self.refresh()
+            mujoco.mj_rnePostConstraint(self.model, self.data)
+            self._loads_fresh = True
 
     def body(self, name: str) -> int:
         """Return the number of a body."""

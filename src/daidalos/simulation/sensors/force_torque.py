@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import mujoco
 import numpy as np
 
 from daidalos.common.pose3 import Pose, rotation_matrix
@@ -65,9 +64,8 @@ class ForceTorque(NoisySensor):
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Return the wrench between the links."""
         physics = self.instance.physics
-        physics.refresh()
+        physics.refresh_loads()
         model, data = physics.model, physics.data
-        mujoco.mj_rnePostConstraint(model, data)
         # MuJoCo keeps torque and force on the child at the centre of mass of the whole tree, in world axes.
         torque, force = data.cfrc_int[self.link.body, :3], data.cfrc_int[self.link.body, 3:]
         anchor = self.link.pose @ (Pose() if self._joint is None else self._joint.anchor)
