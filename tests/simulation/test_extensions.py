@@ -13,6 +13,7 @@ from daidalos.simulation.contracts import Plugin, Sensor
 from daidalos.simulation.extensions import PLUGINS, SENSORS
 from daidalos.simulation.libraries import is_built_in, library_name, library_of
 from daidalos.simulation.plugins.diff_drive import DiffDrive
+from daidalos.simulation.sensors.camera import Camera
 from daidalos.simulation.sensors.lidar import Lidar
 from places import REPOSITORY
 from simulation.models import box, world
@@ -143,3 +144,8 @@ def test_the_documented_plugin_blows():
     simulation = Simulation(world(box("b", pose="0 0 9 0 0 0", mass=2).replace("</model>", f"{wind}</model>")))
     simulation.advance(1_000_000_000)
     assert simulation.pose("b").position[0] == pytest.approx(0.75, rel=0.01)  # a t^2 / 2
+
+
+@pytest.mark.parametrize("name", ["camera", "rgbd_camera", "depth_camera", "multicamera", "wideanglecamera"])
+def test_cameras_are_found_by_their_names(name):
+    assert issubclass(find(SENSORS, name), Camera)

@@ -289,7 +289,7 @@ def _classes_in(package: str, attribute: str) -> Iterator[Extension]:
     for folder in (spec.submodule_search_locations or ()) if spec else ():
         for path in sorted(Path(folder).glob("*.py")):
             text = path.read_text(encoding="utf-8")
-            if f"    {attribute} = (" not in text:
+            if f"    {attribute} = (" not in text and f"    {attribute}: ClassVar[" not in text:
                 continue
             for node in ast.parse(text, str(path)).body:
                 names = _names_of(node, attribute) if isinstance(node, ast.ClassDef) else ()
@@ -303,7 +303,12 @@ def _names_of(definition: ast.ClassDef, attribute: str) -> tuple[str, ...]:
     import ast
 
     for statement in definition.body:
-        if isinstance(statement, ast.Assign) and attribute in (getattr(one, "id", "") for one in statement.targets):
-            texts = [one for one in ast.walk(statement.value) if isinstance(one, ast.Constant)]
+        targets: list[ast.expr] = []
+        if isinstance(statement, ast.Assign):
+            targets = statement.targets
+        elif isinstance(statement, ast.AnnAssign):
+            targets = [statement.target]
+        if attribute in (getattr(one, "id", "") for one in targets):
+            texts = [one for one in ast.walk(statement) if isinstance(one, ast.Constant)]
             return tuple(str(one.value) for one in sorted(texts, key=lambda one: (one.lineno, one.col_offset)))
     return ()
