@@ -149,3 +149,6 @@ def test_the_documented_plugin_blows():
 @pytest.mark.parametrize("name", ["camera", "rgbd_camera", "depth_camera", "multicamera", "wideanglecamera"])
 def test_cameras_are_found_by_their_names(name):
     assert issubclass(find(SENSORS, name), Camera)
+    assert "Ellipsis" not in Camera.names
+    with pytest.raises(UnknownExtension):
+        find(SENSORS, "Ellipsis")

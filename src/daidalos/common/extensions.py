@@ -309,6 +309,7 @@ def _names_of(definition: ast.ClassDef, attribute: str) -> tuple[str, ...]:
         elif isinstance(statement, ast.AnnAssign):
             targets = [statement.target]
         if attribute in (getattr(one, "id", "") for one in targets):
-            texts = [one for one in ast.walk(statement) if isinstance(one, ast.Constant)]
+            found = (one for one in ast.walk(statement) if isinstance(one, ast.Constant))
+            texts = [one for one in found if isinstance(one.value, str)]  # the annotation has an ellipsis
             return tuple(str(one.value) for one in sorted(texts, key=lambda one: (one.lineno, one.col_offset)))
     return ()
