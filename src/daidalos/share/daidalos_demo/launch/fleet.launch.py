@@ -16,13 +16,16 @@ from nav2_common.launch import RewrittenYaml
 
 from daidalos.common.temporary_files import write_temporary
 
+COMMANDS = [("cmd_vel", "cmd_vel_nav")]
 SERVERS = [
-    ("nav2_controller", "nav2_controller::ControllerServer", "controller_server"),
-    ("nav2_planner", "nav2_planner::PlannerServer", "planner_server"),
-    ("nav2_behaviors", "behavior_server::BehaviorServer", "behavior_server"),
-    ("nav2_bt_navigator", "nav2_bt_navigator::BtNavigator", "bt_navigator"),
-    ("nav2_lifecycle_manager", "nav2_lifecycle_manager::LifecycleManager", "lifecycle_manager_navigation"),
+    ("nav2_controller", "nav2_controller::ControllerServer", "controller_server", COMMANDS),
+    ("nav2_planner", "nav2_planner::PlannerServer", "planner_server", []),
+    ("nav2_behaviors", "behavior_server::BehaviorServer", "behavior_server", COMMANDS),
+    ("nav2_velocity_smoother", "nav2_velocity_smoother::VelocitySmoother", "velocity_smoother", COMMANDS),
+    ("nav2_collision_monitor", "nav2_collision_monitor::CollisionMonitor", "collision_monitor", []),
+    ("nav2_bt_navigator", "nav2_bt_navigator::BtNavigator", "bt_navigator", []),
 ]
+MANAGED = {"autostart": True, "node_names": [name for _, _, name, _ in SERVERS]}
 START = 5.0
 SIMULATED = {"use_sim_time": True}
 AHEAD = "{{pose: {{header: {{frame_id: map}}, pose: {{position: {{x: {:g}}}, orientation: {{w: 1.0}}}}}}}}"
@@ -57,10 +60,24 @@ def robot(name, x, y, description, distance):
     navigation = parameters_of(name, "nav2_bringup", "params", "nav2_params.yaml")
     mapping = parameters_of(name, "slam_toolbox", "config", "mapper_params_online_async.yaml")
     servers = [
-        ComposableNode(package=package, plugin=plugin, name=node, namespace=name, parameters=parameters, remappings=own)
-        for package, plugin, node, parameters in (
-            ("slam_toolbox", "slam_toolbox::AsynchronousSlamToolbox", "slam_toolbox", [mapping, SIMULATED]),
+        ComposableNode(
+            package=package,
+            plugin=plugin,
+            name=node,
+            namespace=name,
+            parameters=parameters,
+            remappings=[*own, *remappings],
+        )
+        for package, plugin, node, remappings, parameters in (
+            ("slam_toolbox", "slam_toolbox::AsynchronousSlamToolbox", "slam_toolbox", [], [mapping, SIMULATED]),
             *((*server, [navigation]) for server in SERVERS),
+            (
+                "nav2_lifecycle_manager",
+                "nav2_lifecycle_manager::LifecycleManager",
+                "lifecycle_manager_navigation",
+                [],
+                [navigation, MANAGED],
+            ),
         )
     ]
     goal = AHEAD.format(distance)

@@ -1,49 +1,99 @@
-"""The navigation stack: planner, controller, behaviours and navigator, each in a process or all in a container."""
+"""The navigation stack, each server in a process or all in a container.
+
+Commands of the controller and the behaviours go through the velocity smoother and the collision monitor to `cmd_vel`.
+"""
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, GroupAction
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.conditions import IfCondition, UnlessCondition
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
-from launch_ros.actions import LoadComposableNodes, Node
-from launch_ros.descriptions import ComposableNode
+from launch_ros.actions import LoadComposableNodes, Node, SetParameter
+from launch_ros.descriptions import ComposableNode, ParameterFile
 from launch_ros.substitutions import FindPackageShare
+from nav2_common.launch import RewrittenYaml
 
-NODES = [
-    ("nav2_controller", "controller_server", "nav2_controller::ControllerServer", "controller_server"),
-    ("nav2_planner", "planner_server", "nav2_planner::PlannerServer", "planner_server"),
-    ("nav2_behaviors", "behavior_server", "behavior_server::BehaviorServer", "behavior_server"),
-    ("nav2_bt_navigator", "bt_navigator", "nav2_bt_navigator::BtNavigator", "bt_navigator"),
-    (
-        "nav2_lifecycle_manager",
-        "lifecycle_manager",
-        "nav2_lifecycle_manager::LifecycleManager",
-        "lifecycle_manager_navigation",
-    ),
+COMMANDS = [("cmd_vel", "cmd_vel_nav")]
+SERVERS = [
+    ("nav2_controller", "controller_server", "nav2_controller::ControllerServer", COMMANDS),
+    ("nav2_smoother", "smoother_server", "nav2_smoother::SmootherServer", []),
+    ("nav2_planner", "planner_server", "nav2_planner::PlannerServer", []),
+    ("nav2_behaviors", "behavior_server", "behavior_server::BehaviorServer", COMMANDS),
+    ("nav2_velocity_smoother", "velocity_smoother", "nav2_velocity_smoother::VelocitySmoother", COMMANDS),
+    ("nav2_collision_monitor", "collision_monitor", "nav2_collision_monitor::CollisionMonitor", []),
+    ("nav2_bt_navigator", "bt_navigator", "nav2_bt_navigator::BtNavigator", []),
+    ("nav2_waypoint_follower", "waypoint_follower", "nav2_waypoint_follower::WaypointFollower", []),
+]
+MANAGER = ("nav2_lifecycle_manager", "lifecycle_manager", "nav2_lifecycle_manager::LifecycleManager")
+ARGUMENTS = [
+    ("namespace", "", "namespace of all nodes"),
+    ("use_sim_time", "false", "whether the simulator's clock is used, where the parameter file does not say"),
+    ("autostart", "true", "whether the nodes are activated at once"),
+    ("use_composition", "False", "whether the nodes are loaded into a container"),
+    ("container_name", "nav2_container", "name of that container"),
+    ("use_respawn", "False", "whether a process that ends is started again"),
+    ("log_level", "info", "log level"),
 ]
 
 
 def generate_launch_description():
-    default = PathJoinSubstitution([FindPackageShare("nav2_bringup"), "params", "nav2_params.yaml"])
-    parameters = LaunchConfiguration("params_file")
-    composed = LaunchConfiguration("use_composition")
-    processes = [
-        Node(package=package, executable=executable, name=name, parameters=[parameters], output="screen")
-        for package, executable, _, name in NODES
-    ]
-    components = [
-        ComposableNode(package=package, plugin=plugin, name=name, parameters=[parameters])
-        for package, _, plugin, name in NODES
-    ]
     return LaunchDescription(
         [
-            DeclareLaunchArgument("params_file", default_value=default, description="parameter file"),
-            DeclareLaunchArgument("use_composition", default_value="False", description="load into a container"),
-            DeclareLaunchArgument("container_name", default_value="nav2_container", description="its name"),
-            GroupAction(processes, condition=UnlessCondition(composed)),
-            LoadComposableNodes(
-                target_container=LaunchConfiguration("container_name"),
-                composable_node_descriptions=components,
-                condition=IfCondition(composed),
+            *(DeclareLaunchArgument(name, default_value=text, description=what) for name, text, what in ARGUMENTS),
+            DeclareLaunchArgument(
+                "params_file",
+                default_value=PathJoinSubstitution([FindPackageShare("nav2_bringup"), "params", "nav2_params.yaml"]),
+                description="parameter file",
             ),
+            SetParameter("use_sim_time", LaunchConfiguration("use_sim_time")),
+            OpaqueFunction(function=nodes),
         ]
     )
+
+
+def nodes(context):
+    """Return the actions that start the nodes, given what the arguments are."""
+    value = LaunchConfiguration
+    namespace = value("namespace").perform(context)
+    file = RewrittenYaml(
+        source_file=value("params_file"), root_key=value("namespace"), param_rewrites={}, convert_types=True
+    )
+    given = ParameterFile(file, allow_substs=True)
+    transforms = [("/tf", "tf"), ("/tf_static", "tf_static")]
+    manager = {"autostart": value("autostart"), "node_names": [name for _, name, *_ in SERVERS]}
+    listed = [
+        *((package, name, plugin, name, [given], remappings) for package, name, plugin, remappings in SERVERS),
+        (*MANAGER, "lifecycle_manager_navigation", [given, manager], []),
+    ]
+    processes = [
+        Node(
+            package=package,
+            executable=executable,
+            name=name,
+            namespace=namespace,
+            parameters=parameters,
+            remappings=[*transforms, *remappings],
+            respawn=value("use_respawn"),
+            respawn_delay=2.0,
+            output="screen",
+            arguments=["--ros-args", "--log-level", value("log_level")],
+            condition=UnlessCondition(value("use_composition")),
+        )
+        for package, executable, _, name, parameters, remappings in listed
+    ]
+    components = [
+        ComposableNode(
+            package=package,
+            plugin=plugin,
+            name=name,
+            namespace=namespace,
+            parameters=parameters,
+            remappings=[*transforms, *remappings],
+        )
+        for package, _, plugin, name, parameters, remappings in listed
+    ]
+    load = LoadComposableNodes(
+        target_container=(namespace, "/", value("container_name")),
+        composable_node_descriptions=components,
+        condition=IfCondition(value("use_composition")),
+    )
+    return [*processes, load]
