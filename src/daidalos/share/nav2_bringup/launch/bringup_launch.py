@@ -1,0 +1,71 @@
+"""Navigation with a saved map or with SLAM: `slam:=True`, or `map:=FILE`."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
+from launch_ros.actions import Node
+from launch_ros.descriptions import ParameterFile
+from launch_ros.substitutions import FindPackageShare
+from nav2_common.launch import RewrittenYaml
+
+ARGUMENTS = [
+    ("namespace", "", "namespace of all nodes"),
+    ("slam", "False", "whether the map is made while driving"),
+    ("map", "", "map file, without SLAM"),
+    ("use_localization", "True", "whether map and localization are started"),
+    ("use_sim_time", "false", "whether the simulator's clock is used"),
+    ("autostart", "true", "whether the nodes are activated at once"),
+    ("use_composition", "True", "whether the nodes share a process"),
+    ("use_respawn", "False", "whether a process that ends is started again"),
+    ("log_level", "info", "log level"),
+]
+
+
+def included(name, condition, **arguments):
+    """Return the inclusion of a launch file of this package."""
+    passed = {key: LaunchConfiguration(key) for key in ("namespace", "use_sim_time", "autostart", "use_respawn")}
+    return IncludeLaunchDescription(
+        PathJoinSubstitution([FindPackageShare("nav2_bringup"), "launch", name]),
+        launch_arguments={**passed, "params_file": LaunchConfiguration("params_file"), **arguments}.items(),
+        condition=condition,
+    )
+
+
+def generate_launch_description():
+    value = LaunchConfiguration
+    default = PathJoinSubstitution([FindPackageShare("nav2_bringup"), "params", "nav2_params.yaml"])
+    file = RewrittenYaml(
+        source_file=value("params_file"), root_key=value("namespace"), param_rewrites={}, convert_types=True
+    )
+    composed = {"use_composition": value("use_composition"), "container_name": "nav2_container"}
+    localized = ["not ", value("slam"), " and ", value("use_localization")]
+    return LaunchDescription(
+        [
+            *(DeclareLaunchArgument(name, default_value=text, description=what) for name, text, what in ARGUMENTS),
+            DeclareLaunchArgument("params_file", default_value=default, description="parameter file"),
+            Node(
+                package="rclcpp_components",
+                executable="component_container_isolated",
+                name="nav2_container",
+                namespace=value("namespace"),
+                parameters=[ParameterFile(file, allow_substs=True), {"use_sim_time": value("use_sim_time")}],
+                remappings=[("/tf", "tf"), ("/tf_static", "tf_static")],
+                arguments=["--ros-args", "--log-level", value("log_level")],
+                output="screen",
+                condition=IfCondition(value("use_composition")),
+            ),
+            GroupAction(
+                [
+                    included("slam_launch.py", IfCondition(value("slam"))),
+                    included(
+                        "localization_launch.py",
+                        IfCondition(PythonExpression(localized)),
+                        map=value("map"),
+                        **composed,
+                    ),
+                    included("navigation_launch.py", None, **composed),
+                ]
+            ),
+        ]
+    )
