@@ -235,3 +235,20 @@ def test_a_sensor_without_a_transform_keeps_nobody_waiting(
     bench.see(SEE_NEAR)
     bench.step_until(lambda costmap: cost(costmap, *NEAR) == LETHAL)
     assert f"waiting for the transform from {frame} to base_link" in capfd.readouterr().err
+
+
+def test_transforms_are_found_where_the_server_in_a_namespace_remaps_them(
+    stage: Callable[[dict[str, Any]], Stage],
+) -> None:
+    test = stage({})
+    arguments = ["-r", "__ns:=/robot", "-r", "/tf:=tf", "-r", "/tf_static:=tf_static"]
+    server = test.add(PlannerServer(cli_args=["--ros-args", *arguments]))
+    assert server.trigger_configure() == TransitionCallbackReturn.SUCCESS
+    test.publish(
+        "/robot/tf_static",
+        TFMessage(transforms=[transform_stamped((2.0, 0.0, 0.0), "map", "base_link", test.stamp)]),
+        LATCHED,
+    )
+    test.step_until(lambda: server._costmap.robot_pose() is not None)
+    assert server._costmap.robot_pose()[0] == 2.0
+    assert "/robot/scan" in {one.topic_name for one in server._costmap.subscriptions}

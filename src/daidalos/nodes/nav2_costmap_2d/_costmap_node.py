@@ -117,14 +117,20 @@ class CostmapNode(ManagedNode):
     """
 
     def __init__(self, name: str, parent: Node) -> None:
-        namespace = f"{parent.get_namespace().rstrip('/')}/{name}"
+        self._outer_namespace = parent.get_namespace().rstrip("/")
+        namespace = f"{self._outer_namespace}/{name}"
         sim_time = str(parent.get_parameter("use_sim_time").value).lower()
+        # Transforms are where the server has them, also where it remaps them to its namespace.
+        transforms = [
+            arg for topic in ("/tf", "/tf_static") for arg in ("-r", f"{topic}:={parent.resolve_topic_name(topic)}")
+        ]
         # The names are said again for the case that the process's arguments rename its nodes.
         super().__init__(
             name,
             context=parent.context,
             cli_args=[
-                "-r", f"{name}:__node:={name}", "-r", f"{name}:__ns:={namespace}", "-p", f"use_sim_time:={sim_time}"
+                "-r", f"{name}:__node:={name}", "-r", f"{name}:__ns:={namespace}", "-p", f"use_sim_time:={sim_time}",
+                *transforms,
             ],
         )  # fmt: skip
         self.lock = threading.RLock()
@@ -249,7 +255,7 @@ class CostmapNode(ManagedNode):
                 listened.take(sample.lifted(found.transform.translation.z), pose, seconds(stamp))
 
         # A message waits for its transform; updates and services do not wait with it.
-        topic = f"/{listened.topic.removeprefix('/')}"
+        topic = listened.topic if listened.topic.startswith("/") else f"{self._outer_namespace}/{listened.topic}"
         group = MutuallyExclusiveCallbackGroup()
         self.create_subscription(kind, topic, take, qos_profile_sensor_data, callback_group=group)
 

@@ -30,10 +30,10 @@ def generate_launch_description():
         output="screen",
     )
 
-    def change(transition):
+    def change(transition, condition=None):
         return EmitEvent(
             event=ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=transition),
-            condition=starts_itself,
+            condition=condition,
         )
 
     return LaunchDescription(
@@ -52,8 +52,9 @@ def generate_launch_description():
                     start_state="configuring",
                     goal_state="inactive",
                     entities=[change(Transition.TRANSITION_ACTIVATE)],
-                )
+                ),
+                condition=starts_itself,  # evaluated here: the handler runs outside of the scope of an include
             ),
-            change(Transition.TRANSITION_CONFIGURE),
+            change(Transition.TRANSITION_CONFIGURE, starts_itself),
         ]
     )
