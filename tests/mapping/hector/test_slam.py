@@ -46,20 +46,24 @@ def test_a_known_shift_is_recovered(shift: tuple[float, float, float]) -> None:
     assert np.sqrt(found.covariance[0, 0]) < 0.02
 
 
+@pytest.mark.slow
 def test_a_drive_without_odometry_maps_the_arena() -> None:
     walls = arena()
     corners = np.array([[-3.0, -2.3], [3.0, -2.3], [3.2, 2.2], [-3.0, 2.3], [-3.0, -2.0]])
     true = drive(corners, speed=0.5, turn_rate=1.8, rate=5.0)
-    slam = HectorSlam(COURSE)
     noisy = Lidar(beams=360, field=LIDAR.field, noise=0.01, pose=LIDAR.pose)
-    # Without loops, noise that turns the first scans by half a degree, as that of seed 1, is kept: 6.5 cm at the end.
-    rng = np.random.default_rng(2)
-    for pose in true:
-        scan = noisy.scan(walls, pose, rng)
-        found = slam.add_scan(scan, beam_ends(scan, 0.12, 6.0))
-        away = between(between(true[0], pose), found.pose)
-        assert np.hypot(*away[:2]) < 0.05
-        assert abs(away[2]) < np.deg2rad(1.0)
+    worst = []
+    for seed in (1, 2, 3):  # there is no loop closing: with seed 1 the map is turned by 0.5 deg from some scan on
+        slam, rng, distances = HectorSlam(COURSE), np.random.default_rng(seed), []
+        for pose in true:
+            scan = noisy.scan(walls, pose, rng)
+            found = slam.add_scan(scan, beam_ends(scan, 0.12, 6.0))
+            away = between(between(true[0], pose), found.pose)
+            distances.append(np.hypot(*away[:2]))
+            assert abs(away[2]) < np.deg2rad(1.0)
+        worst.append(max(distances))
+    assert np.median(worst) < 0.03
+    assert max(worst) < 0.08
     grid = slam.grid()
     rows, columns = np.nonzero(grid.data == 100)
     drawn = np.stack([columns, rows], axis=1) * grid.resolution + grid.origin[:2] + 0.5 * grid.resolution
