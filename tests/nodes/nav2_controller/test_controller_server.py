@@ -11,7 +11,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import TwistStamped
 from nav2_msgs.action import FollowPath
-from nav2_msgs.msg import Costmap
+from nav2_msgs.msg import Costmap, SpeedLimit
 from nav_msgs.msg import Path
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
@@ -95,6 +95,23 @@ class Bench:
 @pytest.fixture
 def bench(stage: Callable[[dict[str, Any]], Stage]) -> Bench:
     return Bench(stage(PARAMETERS)).start()
+
+
+@pytest.mark.parametrize(("limit", "percentage", "fastest"), [(0.1, False, 0.1), (50.0, True, 0.25), (9.0, False, 0.5)])
+def test_a_speed_limit_is_kept_until_it_is_removed(
+    bench: Bench, limit: float, percentage: bool, fastest: float
+) -> None:
+    publisher = bench.stage.node.create_publisher(SpeedLimit, "speed_limit", 10)
+    publisher.publish(SpeedLimit(speed_limit=limit, percentage=percentage))
+    publisher.publish(SpeedLimit(speed_limit=math.nan))
+    publisher.publish(SpeedLimit(speed_limit=-1.0))
+    bench.stage.step_for(0.2)
+    handle = bench.send(straight(1.5))
+    bench.stage.step_for(1.0)
+    assert max(command[0] for command in bench.robot.commands) == pytest.approx(fastest)
+    publisher.publish(SpeedLimit())
+    bench.stage.step_until(lambda: bench.robot.commands[-1][0] > 0.45)
+    assert bench.stage.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_a_path_is_driven_to_its_end(bench: Bench) -> None:
@@ -247,8 +264,8 @@ def test_shutdown_ends_it_for_good(bench: Bench) -> None:
         (changed("/controller_server", FollowPath={"plugin": "nav2_mppi_controller::MPPIControler"}), "MPPIController"),
         (changed("/controller_server", goal_checker={"plugin": "nav2_controller::Nothing"}), "Nothing"),
         (
-            changed(COSTMAP, plugins=["voxel_layer"], voxel_layer={"plugin": "nav2_costmap_2d::VoxelLayer"}),
-            "VoxelLayer",
+            changed(COSTMAP, plugins=["voxel_layer"], voxel_layer={"plugin": "nav2_costmap_2d::BoxLayer"}),
+            "BoxLayer",
         ),
     ],
 )

@@ -19,7 +19,7 @@ from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode, CostmapOutdated
 from daidalos.nodes.navigation_extensions import ExtensionMaker
-from daidalos.nodes.parameters import declare
+from daidalos.nodes.parameters import declare, declare_without_effect
 
 
 class UnknownController(NavigationError):
@@ -38,6 +38,14 @@ class _Pursuit:
     goal: Any
 
 
+_WITHOUT_EFFECT = {
+    "use_realtime_priority": "no thread of Python has a real-time priority",
+    "action_server_result_timeout": "results are kept as long as the server runs",
+    "bond_heartbeat_period": "there are no bonds; the lifecycle manager asks for states",
+}
+"""Parameters of some of Nav2's releases that do nothing here, with the reason."""
+
+
 @dataclass(frozen=True)
 class ControllerServerParameters(Parameters):
     """Parameters of the node, by their Nav2 names."""
@@ -50,6 +58,16 @@ class ControllerServerParameters(Parameters):
         0.3, "How long to wait for the costmap and for transforms.", unit="s", minimum=0.0
     )
     odom_topic: str = parameter("odom", "Topic of the odometry.", not_empty=True, read_only=True)
+    min_x_velocity_threshold: float = parameter(
+        0.0001, "Measured velocity ahead below which the robot stands.", unit="m/s", minimum=0.0
+    )
+    min_y_velocity_threshold: float = parameter(
+        0.0001, "Measured velocity aside below which the robot stands.", unit="m/s", minimum=0.0
+    )
+    min_theta_velocity_threshold: float = parameter(
+        0.0001, "Measured turn rate below which the robot stands.", unit="rad/s", minimum=0.0
+    )
+    speed_limit_topic: str = parameter("speed_limit", "Topic of speed limits.", not_empty=True, read_only=True)
     enable_stamped_cmd_vel: bool = parameter(False, "Whether cmd_vel is stamped.", read_only=True)
     controller_plugins: tuple[str, ...] = parameter(
         ("FollowPath",), "Names of the controllers.", not_empty=True, unique=True, read_only=True
@@ -85,8 +103,10 @@ class ControllerServer(ManagedNode):
         """Make controllers and checkers and serve."""
         from geometry_msgs.msg import Twist, TwistStamped
         from nav2_msgs.action import FollowPath as FollowPathAction
+        from nav2_msgs.msg import SpeedLimit
         from nav_msgs.msg import Odometry, Path
 
+        declare_without_effect(self, _WITHOUT_EFFECT)
         maker = ExtensionMaker(
             self, replace(self._costmap.extension_context, frequency=self._settings.controller_frequency)
         )
@@ -103,6 +123,7 @@ class ControllerServer(ManagedNode):
         )
         self._local_plan = self.create_publisher(Path, "local_plan", 1)
         self.create_subscription(Odometry, self._settings.odom_topic, self._on_odometry, 10)
+        self.create_subscription(SpeedLimit, self._settings.speed_limit_topic, self._on_speed_limit, 10)
         self.serve_action(FollowPathAction, "follow_path", self._follow)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -111,7 +132,19 @@ class ControllerServer(ManagedNode):
         return super().on_deactivate(state)
 
     def _on_odometry(self, message: Any) -> None:
-        self._velocity = velocity_of(message.twist.twist)
+        p = self._settings
+        least = (p.min_x_velocity_threshold, p.min_y_velocity_threshold, p.min_theta_velocity_threshold)
+        velocity = velocity_of(message.twist.twist)
+        self._velocity = np.where(np.abs(velocity) < least, 0.0, velocity)
+
+    def _on_speed_limit(self, message: Any) -> None:
+        """Pass a limit on to all controllers; one that is negative or not finite is refused."""
+        limit = message.speed_limit
+        if not 0.0 <= limit < np.inf:
+            self.get_logger().error(f"a speed limit must not be negative, but is {limit:g}; the last one stays")
+            return
+        for controller in self._plugins["controller_plugins"].values():
+            controller.set_speed_limit(limit, percentage=message.percentage)
 
     async def _follow(self, goal_handle: Any) -> Any:
         from nav2_msgs.action import FollowPath as FollowPathAction
