@@ -62,8 +62,8 @@ MPPI = {"plugin": "nav2_mppi_controller::MPPIController", "critics": ["CostCriti
         (
             ControllerServer,
             LOCAL,
-            {"plugins": ["voxels"], "voxels": {"plugin": "nav2_costmap_2d::VoxelLayer"}},
-            "'voxels.plugin': there is no costmap layer 'nav2_costmap_2d::VoxelLayer'; ",
+            {"plugins": ["voxels"], "voxels": {"plugin": "nav2_costmap_2d::BoxLayer"}},
+            "'voxels.plugin': there is no costmap layer 'nav2_costmap_2d::BoxLayer'; ",
         ),
         (
             BehaviorServer,
