@@ -68,8 +68,8 @@ MPPI = {"plugin": "nav2_mppi_controller::MPPIController", "critics": ["CostCriti
         (
             BehaviorServer,
             "/behavior_server",
-            {"behavior_plugins": ["assist"], "assist": {"plugin": "nav2_behaviors::AssistedTeleop"}},
-            "'assist.plugin': there is no behavior 'nav2_behaviors::AssistedTeleop'; there are: ",
+            {"behavior_plugins": ["assist"], "assist": {"plugin": "nav2_behaviors::Teleop"}},
+            "'assist.plugin': there is no behavior 'nav2_behaviors::Teleop'; there are: ",
         ),
     ],
 )
