@@ -97,14 +97,14 @@ def test_maps_are_saved_loaded_and_corrected(
 
         browser.click_on("[aria-label='Interactive mode']")
         browser.wait_for("document.querySelector('[aria-label=\"Key scan\"]')?.value === '3'")
-        before = node._slam.key_pose(3)
+        before = node.slam.key_pose(3)
         browser.wait_for(f"document.querySelector('[aria-label=\"Key scan: x\"]').value === '{before[0]:.3f}'")
         _enter(browser, "Key scan: y", f"{before[1] + 0.5:.2f}", "input")
         browser.click_on("[data-slam=move]")
         _wait_for_report(browser, "key scan 3 was moved")
         browser.click_on("[data-slam=manual_loop_closure]")
         _wait_for_report(browser, "optimized the graph with 1 key scans moved")
-        assert node._slam.key_pose(3)[1] > before[1] + 0.04  # the edges hold it
+        assert node.slam.key_pose(3)[1] > before[1] + 0.04  # the edges hold it
 
         browser.click_on("[data-slam=serialize_map]")
         _wait_for_report(browser, "saved 4 scans")

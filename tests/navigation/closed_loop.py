@@ -124,6 +124,9 @@ class Stack:
     def now(self):
         return self.time
 
+    def latest(self, topic, kind, *, latched=False):
+        return None
+
     def start(self, node, goal):
         self.started.append(node.__name__)
         return getattr(self, f"_{node.__name__}")(goal)

@@ -62,9 +62,12 @@ def test_a_killed_parent_takes_its_children_with_it(target):
 
 
 def test_a_released_child_is_left_alone():
-    after = "guard.release(child.pid)\nguard.watch(1 << 22)\nthreading.Event().wait()"
+    after = "guard.release(child.pid)\nguard.watch(1 << 22)\nprint('released', flush=True)\nthreading.Event().wait()"
     parent = started(PARENT.format(target="child.pid", after=after))
-    child = psutil.Process(read_pid(parent))
+    lines = {parent.stdout.readline().strip() for _ in range(3)}  # the child is ready before or after the others
+    assert {"ready", "released"} < lines
+    (number,) = lines - {"ready", "released"}
+    child = psutil.Process(int(number))
     shells = [each for each in psutil.Process(parent.pid).children() if each.pid != child.pid]
     parent.kill()
     psutil.wait_procs(shells, 20)

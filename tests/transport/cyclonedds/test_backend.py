@@ -47,6 +47,9 @@ def test_topics_cross(session, domain):
     publisher = session.create_publisher(node, "/ping", String, Qos())
     inbox = subscribe(session, node, "/pong", String)
     with partner("echo", domain).ready():
+        assert session.graph.wait_for(
+            lambda: bool(session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/ping")), TIMEOUT_S
+        )
         assert session.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
         stranger = session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/ping")[0]
         assert stranger.node.name == "_NODE_NAME_UNKNOWN_"

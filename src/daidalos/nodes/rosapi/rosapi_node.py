@@ -13,7 +13,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from rclpy.task import Future as RclpyFuture
 from rosapi import objectutils, proxy
-from rosapi.glob_helper import any_match, get_globs
+from rosapi.glob_helper import Globs, any_match, split_globs
 from rosapi_msgs import srv
 from rosapi_msgs.msg import TypeDef
 
@@ -40,8 +40,8 @@ class RosapiNode(Node):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("rosapi", **kwargs)
-        declare(self, RosapiNodeParameters)
-        self._globs = get_globs(self)
+        p = declare(self, RosapiNodeParameters)
+        self._globs = Globs(*(split_globs(text) for text in (p.topics_glob, p.services_glob, p.params_glob)))
         self._others = GraphParameters(self)
         self._group = ReentrantCallbackGroup()
         proxy.init(self)

@@ -86,11 +86,6 @@ class RosbridgeWebsocketParameters(Parameters):
     actions_glob: str = parameter("", "Patterns of actions that clients may use.", read_only=True)
     bson_only_mode: bool = parameter(False, "Must be false: messages are JSON or CBOR.", read_only=True)
 
-    def check(self) -> None:
-        """Refuse a form of messages that is not there."""
-        if self.bson_only_mode:
-            raise ParameterError("bson_only_mode", "must be false: messages are JSON, or CBOR where a client asks")
-
 
 class RosbridgeWebsocket(Node):
     """Node that serves the rosbridge protocol on ``ws://localhost:9090/``.
@@ -105,6 +100,8 @@ class RosbridgeWebsocket(Node):
         super().__init__("rosbridge_websocket", **kwargs)
         _accept_whole_numbers(self)
         settings = declare(self, RosbridgeWebsocketParameters)
+        if settings.bson_only_mode:
+            raise ParameterError("bson_only_mode", "must be false: messages are JSON, or CBOR where a client asks")
         declare_without_effect(self, WITHOUT_EFFECT)
         self._settings = settings
         _set_patterns(settings)

@@ -118,8 +118,7 @@ class IncludeLaunchDescription(Action):
             perform_substitutions(context, normalize_to_list_of_substitutions(name))
             for name, _ in self.launch_arguments
         ]
-        # What the launch file around it has set does not count, as in ROS 2: an include passes its arguments on itself.
-        known = set(passed)
+        known = {*passed, *self._arguments_around(context)}
         declared = description.get_launch_arguments_with_include_launch_description_actions()
         for argument, includes in declared:
             if argument._conditionally_included or argument.default_value is not None:
@@ -133,6 +132,10 @@ class IncludeLaunchDescription(Action):
                 )
                 add_location(error, *(argument.origin if self.origin == (None, None) else self.origin))
                 raise error
+
+    def _arguments_around(self, context: LaunchContext) -> set[str]:
+        """Return the names of arguments that count as passed beside those of the include: none, as in ROS 2."""
+        return set()
 
     def _plain_argument_names(self) -> set[str]:
         """Return the names of the arguments that it passes on, as far as they are known before launching."""

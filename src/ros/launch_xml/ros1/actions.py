@@ -199,6 +199,10 @@ class IncludeRos1(IncludeLaunchDescription):
         kwargs["pass_all_args"] = entity.get_attr("pass_all_args", optional=True) is not None
         return cls, kwargs
 
+    def _arguments_around(self, context: LaunchContext) -> set[str]:
+        """Return the names of all arguments where they are passed on."""
+        return set(context.launch_configurations) if self.__pass_all_args else set()
+
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """Load the file and yield it in a scope of its own."""
         outside = dict(context.launch_configurations)
