@@ -53,7 +53,7 @@ def test_a_goal_set_with_the_mouse_is_reached(page: Chromium) -> None:
 _STANDS = """(() => {
     const at = daidalos.project(0, 0), last = window.lastProjected;
     window.lastProjected = at;
-    window.looksAlike = last && Math.hypot(at.x - last.x, at.y - last.y) < 0.01 ? (window.looksAlike ?? 0) + 1 : 0;
+    window.looksAlike = last && Math.hypot(at.x - last.x, at.y - last.y) < 1 ? (window.looksAlike ?? 0) + 1 : 0;
     return window.looksAlike > 60;
 })()"""
 """Condition of the view having stood still for some two seconds."""
@@ -61,7 +61,7 @@ _STANDS = """(() => {
 
 def drag_goal(page: Chromium, at: tuple[float, float], ahead: tuple[float, float]) -> None:
     """Take the goal tool, press at a place on the ground and pull towards where the robot is to look."""
-    page.wait_for(_STANDS)  # the first view still moves while the map grows
+    page.wait_for(_STANDS, timeout=180)  # the first view still moves while the map grows
     begin, end = (page.evaluate(f"daidalos.project({x}, {y})") for x, y in (at, ahead))
     page.evaluate("daidalos.takeTool('goal')")
     middle = ((begin["x"] + end["x"]) / 2, (begin["y"] + end["y"]) / 2)
