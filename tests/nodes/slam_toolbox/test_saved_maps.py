@@ -12,6 +12,7 @@ from geometry_msgs.msg import Pose2D, PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap
 from rclpy.lifecycle import TransitionCallbackReturn
+from rclpy.task import Future
 from slam_toolbox.srv import (
     AddSubmap,
     Clear,
@@ -134,6 +135,22 @@ def test_a_map_is_saved_loaded_and_gone_on_from(start: Start, saved: Path, tmp_p
     assert answer.result == answer.RESULT_SUCCESS
     assert sorted(path.name for path in tmp_path.glob("map*")) == ["map.data", "map.posegraph"]
     assert bench.stage.call(ClearQueue, "/slam_toolbox/clear_queue").status
+
+
+def test_a_map_asked_for_while_the_algorithms_are_compiled_is_loaded_afterwards(
+    start: Start, saved: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compiled: Future = Future()
+    monkeypatch.setattr("daidalos.nodes.slam_toolbox._slam_toolbox.warm_up_in_background", lambda *_: compiled)
+    bench = start(SynchronousSlamToolbox)
+    client = bench.stage.node.create_client(DeserializePoseGraph, "/slam_toolbox/deserialize_map")
+    bench.stage.step_until(client.service_is_ready)
+    answer = client.call_async(DeserializePoseGraph.Request(filename=str(saved), match_type=1))
+    bench.stage.step_for(0.5)
+    assert not answer.done()
+    compiled.set_result(None)
+    bench.stage.result(answer)
+    assert bench.node.slam.key_count > 0
 
 
 @pytest.mark.parametrize("content", [None, b"", b"nothing of ours"])

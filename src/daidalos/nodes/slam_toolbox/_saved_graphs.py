@@ -72,25 +72,25 @@ class SavedGraphs:
         self._node.get_logger().info(f"saved {len(saved.clouds)} scans to {files[0]} and {files[1]}")
         return response
 
-    def _on_deserialize(self, request: Any, response: Any) -> Any:
+    async def _on_deserialize(self, request: Any, response: Any) -> Any:
         try:
-            self._deserialize(request)
+            await self._deserialize(request)
         except UserError as error:
             self._node.get_logger().error(f"cannot load the pose graph: {error}")
         return response
 
-    def _deserialize(self, request: Any) -> None:
+    async def _deserialize(self, request: Any) -> None:
         refusal = self._node.refusal_to_load(request)
         if refusal:
             raise UserError(refusal)
         if not request.filename:
             raise UserError("the request has no filename")
-        if self._node.slam is None:
-            raise UserError("the algorithms are still being prepared; try again")
         pose = (request.initial_pose.x, request.initial_pose.y, request.initial_pose.theta)
         if not np.isfinite(pose).all():
             raise UserError(f"expected a finite initial_pose, found {pose}")
-        slam = self._node.new_slam(self.load(request.filename))
+        saved = self.load(request.filename)
+        await self._node.ready
+        slam = self._node.new_slam(saved)
         if request.match_type == request.START_AT_FIRST_NODE:
             slam.start_at_first()
         else:

@@ -69,6 +69,8 @@ class SlamToolbox(ManagedNode):
             self.declare_parameter(name, value=False)
         self._apply_logging()
         self.slam: Any = None
+        self.ready: Future = Future()
+        """Done when the algorithms are compiled and scans are processed."""
         self._saved: Any = None
         self.lock = threading.Lock()
         self._reports = ScanReports(self)
@@ -119,6 +121,7 @@ class SlamToolbox(ManagedNode):
         if p.use_map_saver:
             self.create_service(SaveMap, "slam_toolbox/save_map", self._on_save)
         self._moved_scans = MovedScans(self)
+        self.ready = Future()
         self._compiled.add_done_callback(self._begin)
 
     def _begin(self, compiled: Future) -> None:
@@ -131,6 +134,7 @@ class SlamToolbox(ManagedNode):
         self._saved = None
         self._reports.start()
         self.get_logger().info("ready for scans")
+        self.ready.set_result(None)
 
     def new_slam(self, saved: Any = None) -> Any:
         """Return the library's object of a new map, or of a saved one."""
