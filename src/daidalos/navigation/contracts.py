@@ -28,7 +28,7 @@ from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.voxels import VoxelGrid
 
 if TYPE_CHECKING:
-    from daidalos.navigation.controllers.mppi.rollouts import Rollouts
+    from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts
 
 Command = TypeVar("Command")
 T = TypeVar("T")
@@ -297,6 +297,8 @@ class Scene:
         Pose of the path farthest along that any rollout ends near to.
     step : float
         Length of a step of the rollouts [s].
+    limits : Limits
+        What the robot can do, under the speed limit.
     """
 
     control: ControlInput
@@ -305,6 +307,7 @@ class Scene:
     path_free: NDArray[np.bool_]
     furthest: int
     step: float
+    limits: Limits
 
     def next_free(self, index: int) -> int:
         """Return the index of the first free pose of the path from an index on; the last if there is none."""

@@ -8,6 +8,8 @@ from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.contracts import ControlInput, NavigationContext
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
+from daidalos.navigation.controllers.mppi.critics.obstacles_critic import ObstaclesCritic
+from daidalos.navigation.controllers.mppi.critics.path_align_legacy_critic import PathAlignLegacyCritic
 from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
@@ -69,7 +71,7 @@ def _control(costmap: Costmap) -> None:
     controller = MppiController(
         MppiParameters(batch_size=20),
         NavigationContext(footprint=OUTLINE),
-        critics=(outline, *MppiController().critics),
+        critics=(outline, ObstaclesCritic(), PathAlignLegacyCritic(), *MppiController().critics),
     )
     for distance in (2.0, 0.7):
         control = ControlInput(pose, rest, path, path[-1], distance, costmap)

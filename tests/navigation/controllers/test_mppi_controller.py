@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from daidalos.navigation.contracts import NavigationContext
-from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
+from daidalos.navigation.controllers.mppi_controller import AckermannConstraints, MppiController, MppiParameters
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.errors import NoValidControl
 
@@ -20,8 +20,9 @@ def drive(path, costmap, cycles=120, **more):
     for _ in range(cycles):
         passed = int(np.argmin(np.hypot(*(path[:, :2] - pose[:2]).T)))
         velocity = controller.compute_velocity_commands(control(path[passed:], costmap, pose, velocity))
-        heading = pose[2] + 0.5 * velocity[2] * 0.05
-        pose = pose + 0.05 * np.array([velocity[0] * np.cos(heading), velocity[0] * np.sin(heading), velocity[2]])
+        c, s = np.cos(pose[2] + 0.5 * velocity[2] * 0.05), np.sin(pose[2] + 0.5 * velocity[2] * 0.05)
+        vx, vy, turn = velocity
+        pose = pose + 0.05 * np.array([vx * c - vy * s, vx * s + vy * c, turn])
         poses.append(pose)
         velocities.append(velocity)
     return np.array(poses), np.array(velocities)
@@ -90,3 +91,29 @@ def test_the_predicted_trajectory_begins_at_the_robot():
     assert controller.trajectory.shape == (56, 3)
     assert np.hypot(*controller.trajectory[0, :2]) < 0.05
     assert controller.trajectory[-1, 0] > 0.5
+
+
+def test_a_robot_that_moves_sideways_does():
+    poses, velocities = drive(line((0.0, 1.5), heading=0.0), ground(), 120, motion_model="Omni")
+    assert np.hypot(*(poses[-1, :2] - (0.0, 1.5))) < 0.15
+    assert np.abs(velocities[:, 1]).max() > 0.3
+    assert np.abs(velocities[:, 1]).max() <= 0.5 + 1e-6
+
+
+def test_a_robot_that_steers_keeps_to_its_circle():
+    constraints = AckermannConstraints(min_turning_r=0.5)
+    poses, velocities = drive(line((2.0, 0.6)), ground(), 160, motion_model="Ackermann", ackermann=constraints)
+    assert np.hypot(*(poses[-1, :2] - (2.0, 0.6))) < 0.3
+    assert (np.abs(velocities[:, 2]) <= 2.0 * np.abs(velocities[:, 0]) + 1e-5).all()
+
+
+def test_noise_that_is_not_drawn_again_is_the_same_in_each_cycle():
+    given = control(line((2.5, 0.0)))
+    same, other = (
+        MppiController(MppiParameters(regenerate_noises=again, open_loop=False), NavigationContext(footprint=ROBOT))
+        for again in (False, True)
+    )
+    for controller, equal in ((same, True), (other, False)):
+        first = controller.compute_velocity_commands(given)
+        controller.reset()
+        assert np.array_equal(first, controller.compute_velocity_commands(given)) == equal

@@ -8,7 +8,7 @@ import numpy as np
 
 from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
-from daidalos.common.parameters import ParameterError, Parameters, parameter, per_name
+from daidalos.common.parameters import ParameterError, Parameters, group, parameter, per_name
 from daidalos.navigation.contracts import ControlInput, Controller, Critic, NavigationContext, Scene
 from daidalos.navigation.controllers.mppi.proposals import turn_then_drive
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts, Samples, correlated_noise
@@ -32,24 +32,41 @@ class CriticSwitch(Parameters):
 
 
 @dataclass(frozen=True)
+class AckermannConstraints(Parameters):
+    """Parameters of the motion model of robots that steer."""
+
+    min_turning_r: float = parameter(0.2, "Smallest radius of a curve.", unit="m", above=0.0)
+
+
+@dataclass(frozen=True)
 class MppiParameters(Parameters):
     """Parameters of the controller, by their Nav2 names.
 
     `open_loop` is on by default, other than in Nav2: rollouts begin with the last command rather than with odometry's
-    velocity, whose delay makes a robot with limited acceleration crawl and sway. `noise_correlation_time` is ours.
+    velocity, whose delay makes a robot with limited acceleration crawl and sway. `regenerate_noises` is on by default
+    and takes another part of noise that was drawn once. `noise_correlation_time` is ours.
     """
 
+    motion_model: str = parameter(
+        "DiffDrive", "How the robot moves.", choices=("DiffDrive", "Omni", "Ackermann"), read_only=True
+    )
     time_steps: int = parameter(56, "Number of steps of a rollout.", minimum=2)
     model_dt: float = parameter(0.05, "Duration of a step.", unit="s", above=0.0)
     batch_size: int = parameter(1000, "Number of rollouts.", minimum=1)
     vx_std: float = parameter(0.3, "Standard deviation of sampled speeds.", unit="m/s", above=0.0)
     wz_std: float = parameter(0.8, "Standard deviation of sampled turn rates.", unit="rad/s", above=0.0)
+    vy_std: float = parameter(0.2, "Standard deviation of sampled lateral speeds.", unit="m/s", above=0.0)
     vx_max: float = parameter(0.5, "Largest speed ahead.", unit="m/s")
+    vy_max: float = parameter(0.5, "Largest lateral speed.", unit="m/s", minimum=0.0)
     vx_min: float = parameter(-0.15, "Least speed; negative drives backwards.", unit="m/s")
     wz_max: float = parameter(1.8, "Largest turn rate.", unit="rad/s", minimum=0.0)
     ax_max: float = parameter(2.5, "Largest acceleration.", unit="m/s^2", minimum=0.0)
     ax_min: float = parameter(-2.5, "Largest deceleration, negative.", unit="m/s^2", maximum=0.0)
+    ay_max: float = parameter(3.0, "Largest lateral acceleration.", unit="m/s^2", minimum=0.0)
+    ay_min: float = parameter(-3.0, "Largest lateral deceleration, negative.", unit="m/s^2", maximum=0.0)
     az_max: float = parameter(3.2, "Largest turn acceleration.", unit="rad/s^2", minimum=0.0)
+    ackermann: AckermannConstraints = group(AckermannConstraints, "AckermannConstraints")
+    regenerate_noises: bool = parameter(True, "Whether each cycle samples other noise.")
     iteration_count: int = parameter(1, "Number of optimizations in a cycle.", minimum=1)
     temperature: float = parameter(
         0.3, "How much worse trajectories contribute; less selects the best more sharply.", above=0.0
@@ -76,7 +93,7 @@ class MppiParameters(Parameters):
 
 
 class MppiController(Controller):
-    """Model predictive path integral control (Williams et al. 2017) of a robot that drives and turns.
+    """Model predictive path integral control (Williams et al. 2017) of robots that turn, steer or move sideways.
 
     Each cycle disturbs the last control sequence with noise, drives every disturbed sequence through the
     robot's motion model, lets the critics judge the trajectories and takes the mean of the sequences,
@@ -114,14 +131,18 @@ class MppiController(Controller):
         super().reconfigure(parameters)
         p = parameters
         self._speed_limit = p.vx_max
-        self._controls: Samples = np.zeros((p.time_steps, 2), dtype=np.float32)
+        deviations = [p.vx_std, p.wz_std, p.vy_std] if p.motion_model == "Omni" else [p.vx_std, p.wz_std]
+        self._deviations: Samples = np.array(deviations, dtype=np.float32)
+        axes = self._deviations.size
+        self._controls: Samples = np.zeros((p.time_steps, axes), dtype=np.float32)
         self._last_command: Array | None = None
-        self._noise: Samples = np.zeros((p.batch_size, p.time_steps, 2), dtype=np.float32)
+        self._noise: Samples = np.zeros((p.batch_size, p.time_steps, axes), dtype=np.float32)
         self._rollouts = Rollouts.empty(p.batch_size, p.time_steps)
         self._single = Rollouts.empty(1, p.time_steps)
         correlation = math.exp(-p.model_dt / p.noise_correlation_time) if p.noise_correlation_time > 0.0 else 0.0
-        self._pool = correlated_noise(self._generator, NOISE_POOL * p.batch_size, p.time_steps, correlation)
-        self._pool *= np.array([p.vx_std, p.wz_std], dtype=np.float32)
+        batches = NOISE_POOL if p.regenerate_noises else 1
+        self._pool = correlated_noise(self._generator, batches * p.batch_size, p.time_steps, correlation, axes)
+        self._pool *= self._deviations
 
     def _make_critics(self) -> tuple[Critic, ...]:
         """Create the enabled critics of the parameters."""
@@ -135,7 +156,8 @@ class MppiController(Controller):
     def look_ahead(self) -> float:
         """Implement `Controller.look_ahead`."""
         p = self.parameters
-        return max(p.prune_distance, p.vx_max * p.time_steps * p.model_dt) + 0.3
+        fastest = math.hypot(p.vx_max, p.vy_max) if p.motion_model == "Omni" else p.vx_max
+        return max(p.prune_distance, fastest * p.time_steps * p.model_dt) + 0.3
 
     @property
     def trajectory(self) -> Array:
@@ -154,7 +176,7 @@ class MppiController(Controller):
             for _ in range(self.parameters.iteration_count):
                 self._optimise(control)
             if not self._single.collides[0]:
-                command = np.array([float(self._single.vx[0, 0]), 0.0, float(self._single.wz[0, 0])])
+                command = np.array([float(one[0, 0]) for one in (self._single.vx, self._single.vy, self._single.wz)])
                 self._last_command = command
                 return command.copy()
         self.reset()
@@ -178,38 +200,59 @@ class MppiController(Controller):
         """Shift the last sequence by the elapsed time."""
         steps = self.parameters.time_steps
         then = np.minimum(np.arange(steps) + self.period / self.parameters.model_dt, steps - 1.0)
-        for axis in range(2):
+        for axis in range(self._controls.shape[1]):
             self._controls[:, axis] = np.interp(then, np.arange(steps), self._controls[:, axis])
 
     def _optimise(self, control: ControlInput) -> None:
         """Improve the control sequence by one iteration, and simulate it."""
         p = self.parameters
         rollouts = self._rollouts
-        limits = Limits(p.vx_min, self._speed_limit, p.wz_max, p.ax_min, p.ax_max, p.az_max)
-        first = int(self._generator.integers((NOISE_POOL - 1) * p.batch_size))
+        limits = self._limits()
+        free = self._pool.shape[0] - p.batch_size
+        first = int(self._generator.integers(free)) if free else 0
         self._noise[:] = self._pool[first : first + p.batch_size]
         self._noise[0] = -self._controls
         self._noise[1] = self._turn_then_drive(control, limits) - self._controls
         noise = self._noise
         rollouts.drive(control.pose, control.velocity, self._controls, noise, limits, p.model_dt)
-        scene = self._scene(control)
+        scene = self._scene(control, limits)
         for critic in self.critics:
             critic.score(rollouts, scene)
         if p.gamma > 0.0:
-            pull = self._controls * np.array([p.gamma / p.vx_std**2, p.gamma / p.wz_std**2], dtype=np.float32)
+            pull = self._controls * (np.float32(p.gamma) / self._deviations**2)
             rollouts.costs[:] += noise.reshape(p.batch_size, -1) @ pull.ravel()
         weights = _weights(rollouts, p.temperature)
-        self._take(np.stack([weights @ rollouts.vx, weights @ rollouts.wz], axis=-1), control, limits, scene)
+        axes = (rollouts.vx, rollouts.wz, rollouts.vy)[: self._deviations.size]
+        self._take(np.stack([weights @ axis for axis in axes], axis=-1), control, limits, scene)
         if self._single.collides[0]:
             best = int(np.argmin(rollouts.costs))
-            self._take(np.stack([rollouts.vx[best], rollouts.wz[best]], axis=-1), control, limits, scene)
+            self._take(np.stack([axis[best] for axis in axes], axis=-1), control, limits, scene)
+
+    def _limits(self) -> Limits:
+        """Return the limits of the motion model under the speed limit."""
+        p = self.parameters
+        share = self._speed_limit / p.vx_max if p.vx_max > 0.0 else 1.0
+        curvature = 1.0 / p.ackermann.min_turning_r if p.motion_model == "Ackermann" else math.inf
+        return Limits(
+            max(p.vx_min, -self._speed_limit) if self._speed_limit > 0.0 else p.vx_min,
+            self._speed_limit,
+            p.wz_max,
+            p.ax_min,
+            p.ax_max,
+            p.az_max,
+            share * p.vy_max,
+            p.ay_min,
+            p.ay_max,
+            curvature,
+        )
 
     def _turn_then_drive(self, control: ControlInput, limits: Limits) -> Samples:
         """Return the sequence that turns to a point of the path ahead, or to its end, and drives there."""
         index = int(np.searchsorted(distances_along(control.path), TURN_TO))
         x, y = (float(value) for value in control.path[min(index, control.path.shape[0] - 1), :2])
         p = self.parameters
-        return turn_then_drive(control.pose, control.velocity, (x, y), limits, p.time_steps, p.model_dt)
+        sequence = turn_then_drive(control.pose, control.velocity, (x, y), limits, p.time_steps, p.model_dt)
+        return np.pad(sequence, ((0, 0), (0, self._deviations.size - 2)))
 
     def _take(self, controls: Samples, control: ControlInput, limits: Limits, scene: Scene) -> None:
         """Set the current sequence and compute its trajectory."""
@@ -220,7 +263,7 @@ class MppiController(Controller):
             if critic.judges_contact:
                 critic.score(self._single, scene)
 
-    def _scene(self, control: ControlInput) -> Scene:
+    def _scene(self, control: ControlInput, limits: Limits) -> Scene:
         path = control.path
         cells = np.floor((path[:, :2] - control.costmap.origin) / control.costmap.resolution).astype(np.int64)
         inside = (cells >= 0).all(axis=1)
@@ -229,7 +272,8 @@ class MppiController(Controller):
         costs = control.costmap.costs[cells[inside, 1], cells[inside, 0]]
         free[inside] = (costs < INSCRIBED_INFLATED_OBSTACLE) | (costs == NO_INFORMATION)
         furthest = furthest_reached(self._rollouts.x, self._rollouts.y, np.ascontiguousarray(path[:, :2]))
-        return Scene(control, self.context.footprint, distances_along(path), free, furthest, self.parameters.model_dt)
+        along, step = distances_along(path), self.parameters.model_dt
+        return Scene(control, self.context.footprint, along, free, furthest, step, limits)
 
 
 def _weights(rollouts: Rollouts, temperature: float) -> Samples:

@@ -47,6 +47,28 @@ def test_samples_are_driven_as_plain_arithmetic_drives_them(seed):
         assert np.allclose(driven, expected, atol=2e-5)
 
 
+def test_a_robot_that_moves_sideways_is_driven_along_both_axes():
+    rollouts = Rollouts.empty(1, 40)
+    limits = Limits(-0.2, 0.5, 1.8, -2.5, 2.0, 3.2, vy_max=0.3, ay_min=-1.0, ay_max=1.0)
+    controls = np.tile(np.array([0.2, 0.0, -0.9], dtype=np.float32), (40, 1))
+    rollouts.drive(
+        np.array([1.0, 2.0, math.pi / 2]), np.zeros(3), controls, np.zeros((1, 40, 3), np.float32), limits, 0.1
+    )
+    assert np.allclose(rollouts.vy[0, :4], [-0.1, -0.2, -0.3, -0.3], atol=1e-6)
+    assert rollouts.y[0, -1] == pytest.approx(2.0 + 0.1 * rollouts.vx.sum(), abs=1e-4)
+    assert rollouts.x[0, -1] == pytest.approx(1.0 - 0.1 * rollouts.vy.sum(), abs=1e-4)
+
+
+@examples(20)
+@given(seed=st.integers(0, 10_000))
+def test_a_robot_that_steers_turns_in_no_tighter_curve(seed):
+    rollouts = Rollouts.empty(5, 30)
+    limits = Limits(-0.5, 0.5, 1.8, -2.5, 2.0, 9.0, curvature_max=1.25)
+    noise = np.random.default_rng(seed).normal(0.0, 1.0, (5, 30, 2)).astype(np.float32)
+    rollouts.drive(np.zeros(3), np.zeros(3), np.zeros((30, 2), np.float32), noise, limits, 0.05)
+    assert (np.abs(rollouts.wz) <= 1.25 * np.abs(rollouts.vx) + 1e-6).all()
+
+
 def test_costs_are_forgotten():
     rollouts = Rollouts.empty(2, 3)
     rollouts.costs[:], rollouts.collides[:] = 5.0, True

@@ -1,19 +1,27 @@
 """Each critic against its definition, written with plain numpy."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from daidalos.navigation.contracts import Scene
+from daidalos.navigation.controllers.mppi.critics.constraint_critic import ConstraintCritic
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
 from daidalos.navigation.controllers.mppi.critics.goal_angle_critic import GoalAngleCritic
 from daidalos.navigation.controllers.mppi.critics.goal_critic import GoalCritic
-from daidalos.navigation.controllers.mppi.critics.path_align_critic import PathAlignCritic
-from daidalos.navigation.controllers.mppi.critics.path_angle_critic import PathAngleCritic
+from daidalos.navigation.controllers.mppi.critics.obstacles_critic import ObstaclesCritic, ObstaclesCriticParameters
+from daidalos.navigation.controllers.mppi.critics.path_align_critic import PathAlignCritic, PathAlignCriticParameters
+from daidalos.navigation.controllers.mppi.critics.path_align_legacy_critic import PathAlignLegacyCritic
+from daidalos.navigation.controllers.mppi.critics.path_angle_critic import PathAngleCritic, PathAngleCriticParameters
 from daidalos.navigation.controllers.mppi.critics.path_follow_critic import PathFollowCritic
 from daidalos.navigation.controllers.mppi.critics.prefer_forward_critic import PreferForwardCritic
-from daidalos.navigation.controllers.mppi.critics.twirling_critic import TwirlingCritic
+from daidalos.navigation.controllers.mppi.critics.twirling_critic import TwirlingCritic, TwirlingCriticParameters
+from daidalos.navigation.controllers.mppi.critics.velocity_deadband_critic import (
+    VelocityDeadbandCritic,
+    VelocityDeadbandCriticParameters,
+)
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts
 from daidalos.navigation.controllers.mppi_controller import furthest_reached
 from daidalos.navigation.costmap.footprint import Footprint
@@ -40,7 +48,7 @@ def scene(rollouts, path, footprint=ROBOT, **more):
     for i, (x, y, _) in enumerate(path):
         free[i] = given.costmap.cost_at(x, y) < 253
     furthest = furthest_reached(rollouts.x, rollouts.y, path[:, :2].copy())
-    return Scene(given, footprint, distances_along(path), free, furthest, 0.05)
+    return Scene(given, footprint, distances_along(path), free, furthest, 0.05, LIMITS)
 
 
 def costs_of(critic, rollouts, seen):
@@ -161,3 +169,86 @@ def test_the_outline_of_a_long_robot_is_considered_when_asked_for(rollouts):
     costs_of(CostCritic(CostCriticParameters(consider_footprint=True)), rollouts, seen)
     assert (rollouts.collides | ~by_centre).all()
     assert rollouts.collides.sum() > by_centre.sum()
+
+
+def test_a_power_is_of_the_weighted_cost(rollouts):
+    seen = scene(rollouts, line((3.0, 0.0)))
+    once = costs_of(TwirlingCritic(), rollouts, seen)
+    squared = costs_of(TwirlingCritic(TwirlingCriticParameters(cost_power=2)), rollouts, seen)
+    assert np.allclose(squared, once**2, rtol=1e-4)
+
+
+def test_path_align_critic_adds_angles_to_the_path_s_poses(rollouts):
+    seen = scene(rollouts, line((3.0, 0.4)))
+    with_angles = costs_of(PathAlignCritic(PathAlignCriticParameters(use_path_orientations=True)), rollouts, seen)
+    without = costs_of(PathAlignCritic(), rollouts, seen)
+    assert (with_angles >= without - 1e-4).all()
+    assert (with_angles[np.abs(rollouts.wz).max(axis=1) > 1.0] > without[np.abs(rollouts.wz).max(axis=1) > 1.0]).all()
+
+
+def test_path_align_legacy_critic_takes_the_nearest_pose(rollouts):
+    path = line((3.0, 0.4))
+    seen = scene(rollouts, path)
+    near = path[: seen.furthest + 1]
+    points = np.stack([rollouts.x, rollouts.y], axis=-1)[:, 3::4].astype(float)
+    expected = 10.0 * np.hypot(*(points[:, :, None] - near[None, None, :, :2]).transpose(3, 0, 1, 2)).min(axis=2).mean(
+        1
+    )
+    assert np.allclose(costs_of(PathAlignLegacyCritic(), rollouts, seen), expected, rtol=1e-4)
+
+
+@pytest.mark.parametrize(("mode", "end", "silent"), [(0, (-3.0, 0.0), False), (1, (-3.0, 0.0), True)])
+def test_path_angle_critic_lets_a_robot_reverse_when_asked_for(rollouts, mode, end, silent):
+    critic = PathAngleCritic(PathAngleCriticParameters(mode=mode))
+    assert costs_of(critic, rollouts, scene(rollouts, line(end))).any() != silent
+
+
+def test_path_angle_critic_follows_the_side_that_the_path_faces(rollouts):
+    path = line((-3.0, 0.0))
+    path[:, 2] = 0.0  # driven backwards
+    critic = PathAngleCritic(PathAngleCriticParameters(mode=2))
+    assert not costs_of(critic, rollouts, scene(rollouts, path)).any()
+    assert costs_of(critic, rollouts, scene(rollouts, line((-3.0, 0.0)))).any()
+
+
+def test_constraint_critic_counts_speed_above_the_limit_and_curves_that_are_too_tight(rollouts):
+    seen = scene(rollouts, line((3.0, 0.0)))
+    assert not costs_of(ConstraintCritic(), rollouts, seen).any()
+    rollouts.vy[:] = 0.4
+    speed = np.hypot(rollouts.vx, 0.4) * np.sign(rollouts.vx)
+    expected = 4.0 * 0.05 * (np.maximum(speed - 0.5, 0.0) + np.maximum(-0.3 - speed, 0.0)).sum(axis=1)
+    assert np.allclose(costs_of(ConstraintCritic(), rollouts, seen), expected, rtol=1e-3)
+    rollouts.vy[:] = 0.0
+    steering = replace(seen, limits=replace(LIMITS, curvature_max=2.0))
+    inside = np.maximum(0.5 - np.abs(rollouts.vx) / np.abs(rollouts.wz), 0.0).sum(axis=1)
+    assert np.allclose(costs_of(ConstraintCritic(), rollouts, steering), 4.0 * 0.05 * inside, rtol=1e-3)
+
+
+def test_velocity_deadband_critic_counts_what_lies_within(rollouts):
+    critic = VelocityDeadbandCritic(VelocityDeadbandCriticParameters(deadband_velocities=(0.05, 0.0, 0.3)))
+    within = np.maximum(0.05 - np.abs(rollouts.vx), 0.0) + np.maximum(0.3 - np.abs(rollouts.wz), 0.0)
+    expected = 35.0 * 0.05 * within.sum(axis=1)
+    assert np.allclose(costs_of(critic, rollouts, scene(rollouts, line((3.0, 0.0)))), expected, rtol=1e-3)
+
+
+def test_obstacles_critic_repels_by_distance_and_notes_contact(rollouts):
+    obstacle = np.array([0.725, 0.325])
+    parameters = ObstaclesCriticParameters(cost_scaling_factor=4.0, inflation_radius=0.55)
+    seen = scene(rollouts, line((3.0, 0.0)), costmap=ground([tuple(obstacle)]))
+    costs = costs_of(ObstaclesCritic(parameters), rollouts, seen)
+    for b in range(50):
+        under = np.array(
+            [
+                seen.control.costmap.cost_at(float(x), float(y))
+                for x, y in zip(rollouts.x[b], rollouts.y[b], strict=True)
+            ]
+        )
+        assert rollouts.collides[b] == (under >= 253).any()
+        if rollouts.collides[b]:
+            assert costs[b] == pytest.approx(100_000.0)
+            continue
+        near = np.where(under > 0, np.log(252.0 / np.maximum(under, 1)) / 4.0, np.inf)
+        repelled = np.maximum(0.55 - near, 0.0).mean()
+        critical = np.maximum(0.1 - near, 0.0).sum()
+        assert costs[b] == pytest.approx(1.5 * repelled + 20.0 * critical, rel=1e-3, abs=1e-5)
+    assert rollouts.collides.any()

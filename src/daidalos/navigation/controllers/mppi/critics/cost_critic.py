@@ -29,6 +29,9 @@ class CostCriticParameters(Parameters):
 
     cost_weight: float = parameter(10.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
     cost_power: int = parameter(3, "Power that the cost of a cell is raised to.", minimum=1)
+    near_collision_cost: int = parameter(
+        253, "Cost of a cell from which on a pose there costs `critical_cost`.", minimum=1, maximum=254
+    )
     critical_cost: float = parameter(300.0, "Cost of a pose within the inscribed radius of obstacles.", minimum=0.0)
     collision_cost: float = parameter(1_000_000.0, "Cost of a trajectory that collides.", minimum=0.0)
     near_goal_distance: float = parameter(
@@ -61,6 +64,7 @@ class CostCritic(Critic):
         """Implement `NavigationExtension.reconfigure`."""
         super().reconfigure(parameters)
         self._price = parameters.cost_weight * (np.arange(256) / LETHAL_OBSTACLE) ** parameters.cost_power
+        self._price[parameters.near_collision_cost : NO_INFORMATION] = parameters.critical_cost
         self._price[NO_INFORMATION] = 0.0
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
@@ -74,7 +78,6 @@ class CostCritic(Critic):
         price, contact = self._price - self._price[tolerated], INSCRIBED_INFLATED_OBSTACLE
         if FootprintCollisionChecker(costmap, scene.footprint).in_collision(scene.control.pose):
             outline, contact = NO_OUTLINE, LETHAL_OBSTACLE
-            price[INSCRIBED_INFLATED_OBSTACLE] = p.critical_cost
         cost_of_cells(
             rollouts.x,
             rollouts.y,

@@ -5,14 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.parameters import parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.contracts import Critic, Scene
+from daidalos.navigation.controllers.mppi.critic_parameters import CriticParameters
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class GoalAngleCriticParameters(Parameters):
+class GoalAngleCriticParameters(CriticParameters):
     """Parameters of the critic, by their Nav2 names."""
 
     cost_weight: float = parameter(3.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
@@ -39,4 +40,4 @@ class GoalAngleCritic(Critic):
         if away > min(self.parameters.threshold_to_consider, scene.control.xy_goal_tolerance):
             return
         angle = np.abs(wrap(rollouts.yaw - float(scene.control.goal[2])))
-        rollouts.costs[:] += (self.parameters.cost_weight * angle.mean(axis=1)).astype(np.float32)
+        self.parameters.add(rollouts, angle.mean(axis=1))

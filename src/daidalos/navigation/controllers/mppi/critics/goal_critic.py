@@ -5,13 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.kernels import compiled
-from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.parameters import parameter
 from daidalos.navigation.contracts import Critic, Scene
+from daidalos.navigation.controllers.mppi.critic_parameters import CriticParameters
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 
 
 @dataclass(frozen=True)
-class GoalCriticParameters(Parameters):
+class GoalCriticParameters(CriticParameters):
     """Parameters of the critic, by their Nav2 names."""
 
     cost_weight: float = parameter(5.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
@@ -32,16 +33,18 @@ class GoalCritic(Critic):
         if scene.control.distance_to_goal > self.parameters.threshold_to_consider:
             return
         x, y = (float(value) for value in scene.control.goal[:2])
-        mean_distance(rollouts.x, rollouts.y, x, y, self.parameters.cost_weight, rollouts.costs)
+        self.parameters.add(rollouts, mean_distance(rollouts.x, rollouts.y, x, y))
 
 
 @compiled
-def mean_distance(x: Samples, y: Samples, goal_x: float, goal_y: float, weight: float, total: Samples) -> None:
-    """Add the weighted mean distance of each rollout to a point to `total`."""
+def mean_distance(x: Samples, y: Samples, goal_x: float, goal_y: float) -> Samples:
+    """Return the mean distance of each rollout to a point."""
     gx, gy = np.float32(goal_x), np.float32(goal_y)
+    means = np.empty(x.shape[0], dtype=np.float32)
     for b in range(x.shape[0]):
         added = np.float32(0.0)
         for t in range(x.shape[1]):
             dx, dy = x[b, t] - gx, y[b, t] - gy
             added += np.sqrt(dx * dx + dy * dy)
-        total[b] += np.float32(weight) * added / x.shape[1]
+        means[b] = added / x.shape[1]
+    return means

@@ -6,13 +6,14 @@ import numpy as np
 
 from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
-from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.parameters import parameter
 from daidalos.navigation.contracts import Critic, Scene
+from daidalos.navigation.controllers.mppi.critic_parameters import CriticParameters
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 
 
 @dataclass(frozen=True)
-class PathAlignCriticParameters(Parameters):
+class PathAlignCriticParameters(CriticParameters):
     """Parameters of the critic, by their Nav2 names."""
 
     cost_weight: float = parameter(10.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
@@ -26,6 +27,7 @@ class PathAlignCriticParameters(Parameters):
         0.07, "Share of the path behind obstacles above which the critic rests.", minimum=0.0, maximum=1.0
     )
     trajectory_point_step: int = parameter(4, "Step between the poses of a trajectory that are compared.", minimum=1)
+    use_path_orientations: bool = parameter(False, "Whether angles to the path's orientations are added as lengths.")
 
 
 class PathAlignCritic(Critic):
@@ -42,44 +44,49 @@ class PathAlignCritic(Critic):
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """Implement `Critic.score`."""
         p = self.parameters
-        if scene.control.distance_to_goal < p.threshold_to_consider or scene.furthest < p.offset_from_furthest:
+        if not is_path_followed(scene, p):
             return
-        blocked = 1.0 - float(scene.path_free[: scene.furthest + 1].mean())
-        if blocked > p.max_path_occupancy_ratio:
-            return
-        path = scene.control.path
-        mean_offset(
+        offsets = mean_offset(
             rollouts.x,
             rollouts.y,
-            float(scene.control.pose[0]),
-            float(scene.control.pose[1]),
-            np.ascontiguousarray(path[:, :2]),
+            rollouts.yaw,
+            np.ascontiguousarray(scene.control.pose),
+            np.ascontiguousarray(scene.control.path),
             scene.along,
             p.trajectory_point_step,
-            p.cost_weight,
-            rollouts.costs,
+            p.use_path_orientations,
         )
+        p.add(rollouts, offsets)
+
+
+def is_path_followed(scene: Scene, parameters: PathAlignCriticParameters) -> bool:
+    """Return whether rollouts are to keep to the path: not near the goal, before a turn, or where it is blocked."""
+    p = parameters
+    if scene.control.distance_to_goal < p.threshold_to_consider or scene.furthest < p.offset_from_furthest:
+        return False
+    blocked = 1.0 - float(scene.path_free[: scene.furthest + 1].mean())
+    return blocked <= p.max_path_occupancy_ratio
 
 
 @compiled
 def mean_offset(
     x: Samples,
     y: Samples,
-    start_x: float,
-    start_y: float,
-    points: Array,
+    yaw: Samples,
+    start: Array,
+    path: Array,
     along: Array,
     stride: int,
-    weight: float,
-    total: Samples,
-) -> None:
-    """Add the weighted mean distance of rollouts to the path, matched by travelled length, to `total`."""
-    last = points.shape[0] - 1
+    orientations: bool,
+) -> Array:
+    """Return the mean distance of rollouts to the path, matched by travelled length."""
+    means = np.zeros(x.shape[0])
+    last = path.shape[0] - 1
     for b in range(x.shape[0]):
         added = 0.0
         count = 0
         travelled = 0.0
-        px, py = start_x, start_y
+        px, py = start[0], start[1]
         i = 0
         for t in range(stride - 1, x.shape[1], stride):
             dx, dy = x[b, t] - px, y[b, t] - py
@@ -87,10 +94,15 @@ def mean_offset(
             px, py = float(x[b, t]), float(y[b, t])
             while i < last and along[i] < travelled:
                 i += 1
-            ox, oy = px - points[i, 0], py - points[i, 1]
-            added += np.sqrt(ox * ox + oy * oy)
+            ox, oy = px - path[i, 0], py - path[i, 1]
+            squared = ox * ox + oy * oy
+            if orientations:
+                turned = (yaw[b, t] - path[i, 2] + np.pi) % (2.0 * np.pi) - np.pi
+                squared += turned * turned
+            added += np.sqrt(squared)
             count += 1
             if i == last:
                 break
         if count > 0:
-            total[b] += np.float32(weight * added / count)
+            means[b] = added / count
+    return means

@@ -4,15 +4,17 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.parameters import parameter
 from daidalos.common.pose2 import between, wrap
 from daidalos.navigation.contracts import Critic, Scene
+from daidalos.navigation.controllers.mppi.critic_parameters import CriticParameters
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class PathAngleCriticParameters(Parameters):
+class PathAngleCriticParameters(CriticParameters):
     """Parameters of the critic, by their Nav2 names."""
 
     cost_weight: float = parameter(2.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
@@ -24,6 +26,12 @@ class PathAngleCriticParameters(Parameters):
     )
     max_angle_to_furthest: float = parameter(
         0.785, "Angle to that point below which the critic rests.", unit="rad", minimum=0.0
+    )
+    mode: int = parameter(
+        0,
+        "What faces the point: 0 the robot's front, 1 its front or its back, 2 the side that the path's poses face.",
+        minimum=0,
+        maximum=2,
     )
 
 
@@ -41,8 +49,18 @@ class PathAngleCritic(Critic):
             return
         target = scene.control.path[scene.next_free(scene.furthest + p.offset_from_furthest)]
         ahead = between(scene.control.pose, target)
-        if abs(math.atan2(float(ahead[1]), float(ahead[0]))) < p.max_angle_to_furthest:
+        backwards = p.mode == 2 and math.cos(float(target[2] - scene.control.pose[2])) * float(ahead[0]) < 0.0
+        bearing = math.atan2(float(ahead[1]), float(ahead[0]))
+        if float(self._angles(np.array([bearing]), backwards)[0]) < p.max_angle_to_furthest:
             return
-        bearing = np.arctan2(np.float32(target[1]) - rollouts.y[:, -1], np.float32(target[0]) - rollouts.x[:, -1])
-        angle = np.abs(wrap(bearing - rollouts.yaw[:, -1]))
-        rollouts.costs[:] += (p.cost_weight * angle).astype(np.float32)
+        bearings = np.arctan2(np.float32(target[1]) - rollouts.y[:, -1], np.float32(target[0]) - rollouts.x[:, -1])
+        p.add(rollouts, self._angles(bearings - rollouts.yaw[:, -1], backwards))
+
+    def _angles(self, bearings: NDArray[np.floating], backwards: bool) -> NDArray[np.floating]:
+        """Return the angle [rad] that the robot has to turn for each bearing in its own frame."""
+        angles: NDArray[np.floating] = np.abs(wrap(bearings))
+        if self.parameters.mode == 1:
+            angles = np.minimum(angles, np.pi - angles)
+        elif backwards:
+            angles = np.pi - angles
+        return angles

@@ -4,13 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.parameters import parameter
 from daidalos.navigation.contracts import Critic, Scene
+from daidalos.navigation.controllers.mppi.critic_parameters import CriticParameters
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class PathFollowCriticParameters(Parameters):
+class PathFollowCriticParameters(CriticParameters):
     """Parameters of the critic, by their Nav2 names."""
 
     cost_weight: float = parameter(5.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
@@ -36,4 +37,4 @@ class PathFollowCritic(Critic):
             return
         x, y = scene.control.path[scene.next_free(scene.furthest + p.offset_from_furthest), :2]
         away = np.hypot(rollouts.x[:, -1] - np.float32(x), rollouts.y[:, -1] - np.float32(y))
-        rollouts.costs[:] += np.float32(p.cost_weight) * away
+        p.add(rollouts, away)

@@ -4,13 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.parameters import parameter
 from daidalos.navigation.contracts import Critic, Scene
+from daidalos.navigation.controllers.mppi.critic_parameters import CriticParameters
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class PreferForwardCriticParameters(Parameters):
+class PreferForwardCriticParameters(CriticParameters):
     """Parameters of the critic, by their Nav2 names."""
 
     cost_weight: float = parameter(5.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
@@ -31,4 +32,4 @@ class PreferForwardCritic(Critic):
         if scene.control.distance_to_goal < self.parameters.threshold_to_consider:
             return
         reverse = np.maximum(-rollouts.vx, 0.0).sum(axis=1) * np.float32(scene.step)
-        rollouts.costs[:] += np.float32(self.parameters.cost_weight) * reverse
+        self.parameters.add(rollouts, reverse)

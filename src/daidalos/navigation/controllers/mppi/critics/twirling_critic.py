@@ -4,13 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.parameters import parameter
 from daidalos.navigation.contracts import Critic, Scene
+from daidalos.navigation.controllers.mppi.critic_parameters import CriticParameters
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class TwirlingCriticParameters(Parameters):
+class TwirlingCriticParameters(CriticParameters):
     """Parameters of the critic, by their Nav2 names."""
 
     cost_weight: float = parameter(10.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
@@ -27,4 +28,4 @@ class TwirlingCritic(Critic):
         """Implement `Critic.score`."""
         if scene.control.distance_to_goal < scene.control.xy_goal_tolerance:
             return
-        rollouts.costs[:] += np.float32(self.parameters.cost_weight) * np.abs(rollouts.wz).mean(axis=1)
+        self.parameters.add(rollouts, np.abs(rollouts.wz).mean(axis=1))
