@@ -25,7 +25,7 @@ def test_critics_need_no_namespace():
     [
         (extensions.PLANNERS, "nav2_navfn_planner::NavfnPlaner", "did you mean 'nav2_navfn_planner::NavfnPlanner'"),
         (extensions.COSTMAP_LAYERS, "nav2_costmap_2d::BoxLayer", "no costmap layer 'nav2_costmap_2d::BoxLayer'; "),
-        (extensions.CONTROLLERS, "dwb_core::DWBLocalPlanner", "no navigation controller 'dwb_core::DWBLocalPlanner'; "),
+        (extensions.CONTROLLERS, "rtabmap_nav::Pilot", "no navigation controller 'rtabmap_nav::Pilot'; "),
         (extensions.CRITICS, "CostCritik", "did you mean 'mppi::critics::CostCritic'"),
         (extensions.GOAL_CHECKERS, "nav2_controller::SimpleGoalCheker", "did you mean 'nav2_controller::SimpleGoalCh"),
         (

@@ -38,8 +38,8 @@ MPPI = {"plugin": "nav2_mppi_controller::MPPIController", "critics": ["CostCriti
         (
             ControllerServer,
             "/controller_server",
-            {"FollowPath": {"plugin": "dwb_core::DWBLocalPlanner"}},
-            "'FollowPath.plugin': there is no navigation controller 'dwb_core::DWBLocalPlanner'; there are: ",
+            {"FollowPath": {"plugin": "rtabmap_nav::Pilot"}},
+            "'FollowPath.plugin': there is no navigation controller 'rtabmap_nav::Pilot'; there are: ",
         ),
         (
             ControllerServer,

@@ -28,6 +28,7 @@ from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.voxels import VoxelGrid
 
 if TYPE_CHECKING:
+    from daidalos.navigation.controllers.dwb.trajectories import Trajectories
     from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts
 
 Command = TypeVar("Command")
@@ -331,6 +332,42 @@ class Critic(NavigationExtension):
     @abstractmethod
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """Add this critic's costs to `rollouts.costs`."""
+
+
+class TrajectoryCritic(NavigationExtension):
+    """Cost term of trajectories of constant commands, of which the DWB controller takes the best."""
+
+    def reset(self) -> None:
+        """Reset the state of the last task."""
+
+    def note(self, pose: Array, command: Array) -> None:
+        """Take note of the command (x [m/s], y [m/s], yaw [rad/s]) that is given at a pose (x, y, yaw)."""
+
+    @abstractmethod
+    def score(self, trajectories: Trajectories, scene: TrajectoryScene) -> Array:
+        """Return the weighted cost of each trajectory, shape (n,): not negative, infinite where it is impossible."""
+
+
+@dataclass(frozen=True)
+class TrajectoryScene:
+    """Inputs of critics of trajectories beside these.
+
+    Attributes
+    ----------
+    control : ControlInput
+        State, path, goal and costmap of the cycle.
+    footprint : Footprint
+        Outline of the robot.
+    xy_goal_tolerance : float
+        How near [m] to the goal the robot has to turn to the goal's yaw.
+    trans_stopped_velocity : float
+        Translational speed [m/s] below which it stands.
+    """
+
+    control: ControlInput
+    footprint: Footprint
+    xy_goal_tolerance: float
+    trans_stopped_velocity: float
 
 
 @dataclass(frozen=True)

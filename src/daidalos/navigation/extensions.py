@@ -48,6 +48,13 @@ CRITICS: Kind[contracts.Critic] = Kind(
     "gives trajectories of the MPPI controller a cost; named in its `critics`",
     partial(classes_in, "daidalos.navigation.controllers.mppi.critics"),
 )
+TRAJECTORY_CRITICS: Kind[contracts.TrajectoryCritic] = Kind(
+    "trajectory_critic",
+    "daidalos.trajectory_critics",
+    f"{_CONTRACTS}:TrajectoryCritic",
+    "gives trajectories of the DWB controller a cost; named in its `critics`",
+    partial(classes_in, "daidalos.navigation.controllers.dwb.critics"),
+)
 GOAL_CHECKERS: Kind[contracts.GoalChecker] = Kind(
     "goal_checker",
     "daidalos.goal_checkers",
@@ -92,6 +99,7 @@ KINDS = (
     SMOOTHERS,
     CONTROLLERS,
     CRITICS,
+    TRAJECTORY_CRITICS,
     GOAL_CHECKERS,
     PROGRESS_CHECKERS,
     BEHAVIORS,

@@ -7,6 +7,7 @@ import numpy as np
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.contracts import ControlInput, NavigationContext
+from daidalos.navigation.controllers.dwb_controller import DwbController, DwbParameters
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
 from daidalos.navigation.controllers.mppi.critics.obstacles_critic import ObstaclesCritic
 from daidalos.navigation.controllers.mppi.critics.path_align_legacy_critic import PathAlignLegacyCritic
@@ -77,3 +78,9 @@ def _control(costmap: Costmap) -> None:
         control = ControlInput(pose, rest, path, path[-1], distance, costmap)
         controller.compute_velocity_commands(control)
     FootprintCollisionChecker(costmap, OUTLINE).in_collision(pose)
+    limits = DwbParameters(
+        max_vel_x=0.3, max_speed_xy=0.3, max_vel_theta=1.0, acc_lim_x=2.5, acc_lim_theta=3.0, vx_samples=2,
+        vtheta_samples=3, critics=("BaseObstacle", "ObstacleFootprint", "PathDist")
+    )  # fmt: skip
+    sampling = DwbController(limits, NavigationContext(footprint=OUTLINE))
+    sampling.compute_velocity_commands(ControlInput(pose, rest, path, path[-1], 2.0, costmap))

@@ -140,15 +140,15 @@ def test_a_map_is_saved_loaded_and_gone_on_from(start: Start, saved: Path, tmp_p
 def test_a_map_asked_for_while_the_algorithms_are_compiled_is_loaded_afterwards(
     start: Start, saved: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    compiled: Future = Future()
-    monkeypatch.setattr("daidalos.nodes.slam_toolbox._slam_toolbox.warm_up_in_background", lambda *_: compiled)
+    compilation: Future = Future()
+    monkeypatch.setattr("daidalos.nodes.slam_toolbox._slam_toolbox.warm_up_in_background", lambda *_: compilation)
     bench = start(SynchronousSlamToolbox)
     client = bench.stage.node.create_client(DeserializePoseGraph, "/slam_toolbox/deserialize_map")
     bench.stage.step_until(client.service_is_ready)
     answer = client.call_async(DeserializePoseGraph.Request(filename=str(saved), match_type=1))
     bench.stage.step_for(0.5)
     assert not answer.done()
-    compiled.set_result(None)
+    compilation.set_result(None)
     bench.stage.result(answer)
     assert bench.node.slam.key_count > 0
 

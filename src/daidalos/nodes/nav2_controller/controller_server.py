@@ -78,6 +78,11 @@ class ControllerServerParameters(Parameters):
     progress_checker_plugins: tuple[str, ...] = parameter(
         ("progress_checker",), "Names of the progress checkers.", not_empty=True, unique=True, read_only=True
     )
+    progress_checker_plugin: str = parameter(
+        "",
+        "Name of the only progress checker, in parameter files of Humble; the list counts where empty.",
+        read_only=True,
+    )
 
 
 class ControllerServer(ManagedNode):
@@ -117,6 +122,8 @@ class ControllerServer(ManagedNode):
         )
         for group, kind, default in kinds:
             names = getattr(self._settings, group)
+            if kind is PROGRESS_CHECKERS and self._settings.progress_checker_plugin:
+                names = (self._settings.progress_checker_plugin,)
             self._plugins[group] = {name: maker.make(kind, name, default) for name in names}
         self._command = self.create_publisher(
             TwistStamped if self._settings.enable_stamped_cmd_vel else Twist, "cmd_vel", 1

@@ -1,0 +1,1 @@
+"""Parts of the DWB controller: trajectories, their generation and their critics."""
