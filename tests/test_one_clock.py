@@ -29,6 +29,7 @@ ALLOWED = {
     "nodes/joy/_node.py": "when to look for a device again",
     "nodes/keyboard.py": "how long a person has to press a key",
     "nodes/nav2_planner/planner_server.py": "the computing time that the result of a plan reports",
+    "nodes/nav2_route/route_server.py": "the computing time that is limited and reported",
     "nodes/nav2_smoother/smoother_server.py": "duration of smoothing",
     "nodes/rosbridge_server/_server.py": "the pace at which a client wants its messages",
     "nodes/rosbridge_server/rosbridge_websocket.py": "when to try a used port again",

@@ -235,7 +235,8 @@ def parameter(
     not_empty, unique : bool
         For strings and tuples, and for tuples.
     name : str or None
-        In ROS, where the field cannot have that name.
+        In ROS, where the field cannot have that name; empty for the only parameter of a group, which is called as
+        the group.
     read_only : bool
         Whether it stays as it is while its owner runs.
     takes_integer : bool
@@ -347,7 +348,7 @@ def values_of(parameters: Parameters) -> dict[str, Any]:
             continue
         groups = [("", value)] if not entry.by else [(f"{name}.", one) for name, one in value.items()]
         for prefix, one in groups:
-            found |= {f"{entry.prefix}{prefix}{name}": inner for name, inner in values_of(one).items()}
+            found |= {_joined(f"{entry.prefix}{prefix}", name): inner for name, inner in values_of(one).items()}
     return found
 
 
@@ -427,7 +428,13 @@ def _entry(one: Field[Any], hint: Any) -> _Entry:
 
 
 def _named(leaf: Leaf, prefix: str) -> Leaf:
-    return Leaf(f"{prefix}{leaf.name}", leaf.default, leaf.type, leaf.is_array, leaf.constraints) if prefix else leaf
+    name = _joined(prefix, leaf.name)
+    return Leaf(name, leaf.default, leaf.type, leaf.is_array, leaf.constraints) if prefix else leaf
+
+
+def _joined(prefix: str, name: str) -> str:
+    """Return a name below a prefix that ends in a dot; a parameter without a name is called as its group."""
+    return f"{prefix}{name}" if name else prefix.removesuffix(".")
 
 
 def _build(kind: type[T], get: Callable[[Leaf], Any], prefix: str) -> T:

@@ -116,3 +116,43 @@ class TaskFailed(NavigationError):
     """Failure of the task at a waypoint; the message gives the reason."""
 
     code = "TASK_EXECUTOR_FAILED"
+
+
+class RouteError(NavigationError):
+    """Failure to find or track a route; the message gives the reason."""
+
+
+class NoValidGraph(RouteError):
+    """Graph that is missing or cannot be used."""
+
+    code = "NO_VALID_GRAPH"
+
+
+class IndeterminateNodes(RouteError):
+    """Start or goal without a node of the graph."""
+
+    code = "INDETERMINANT_NODES_ON_GRAPH"
+
+
+class RouteTimedOut(RouteError):
+    """Search that took longer than allowed."""
+
+    code = "TIMEOUT"
+
+
+class NoValidRoute(RouteError):
+    """Start and goal without an open connection."""
+
+    code = "NO_VALID_ROUTE"
+
+
+class OperationFailed(RouteError):
+    """Operation on the way that failed."""
+
+    code = "OPERATION_FAILED"
+
+
+class InvalidScorerUse(RouteError):
+    """Scorer that lacks what it needs in the request."""
+
+    code = "INVALID_EDGE_SCORER_USE"

@@ -9,9 +9,11 @@ from daidalos.common.extensions import Kind, classes_in
 
 if TYPE_CHECKING:
     from daidalos.navigation import contracts
+    from daidalos.navigation.routes import contracts as routes
     from daidalos.navigation.trees.node import TreeNode
 
 _CONTRACTS = "daidalos.navigation.contracts"
+_ROUTES = "daidalos.navigation.routes"
 
 COSTMAP_LAYERS: Kind[contracts.Layer] = Kind(
     "costmap_layer",
@@ -83,6 +85,27 @@ WAYPOINT_TASKS: Kind[contracts.WaypointTask] = Kind(
     "what a robot does at each waypoint; named in `waypoint_task_executor_plugin` of the waypoint follower",
     partial(classes_in, "daidalos.navigation.waypoint_tasks"),
 )
+GRAPH_FILE_LOADERS: Kind[routes.GraphFileLoader] = Kind(
+    "graph_file_loader",
+    "daidalos.graph_file_loaders",
+    f"{_ROUTES}.contracts:GraphFileLoader",
+    "reads a graph of routes; named in `graph_file_loader` of the route server",
+    partial(classes_in, f"{_ROUTES}.loaders"),
+)
+EDGE_SCORERS: Kind[routes.EdgeScorer] = Kind(
+    "edge_scorer",
+    "daidalos.edge_scorers",
+    f"{_ROUTES}.contracts:EdgeScorer",
+    "gives edges of routes a cost; named in `edge_cost_functions` of the route server",
+    partial(classes_in, f"{_ROUTES}.scorers"),
+)
+ROUTE_OPERATIONS: Kind[routes.RouteOperation] = Kind(
+    "route_operation",
+    "daidalos.route_operations",
+    f"{_ROUTES}.contracts:RouteOperation",
+    "is carried out on the way along a route; named in `operations` of the route server",
+    partial(classes_in, f"{_ROUTES}.operations"),
+)
 TREE_NODES: Kind[TreeNode] = Kind(
     "tree_node",
     "daidalos.tree_nodes",
@@ -104,5 +127,8 @@ KINDS = (
     PROGRESS_CHECKERS,
     BEHAVIORS,
     WAYPOINT_TASKS,
+    GRAPH_FILE_LOADERS,
+    EDGE_SCORERS,
+    ROUTE_OPERATIONS,
     TREE_NODES,
 )

@@ -1,0 +1,1 @@
+"""Operations on the way along a route, one class each."""

@@ -1,0 +1,1 @@
+"""Server that finds routes through graphs and tracks robots along them."""
