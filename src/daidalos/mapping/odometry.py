@@ -13,8 +13,59 @@ WORST_PER_METRE = 0.5
 WORST_PER_RADIAN = 0.5
 """Largest error [m/m], [rad/rad] for which a place is searched."""
 
+PRIOR_SAMPLES, MAX_SAMPLES = 5.0, 200.0
+"""Matches that the assumption about odometry counts as, and over which its accuracy is averaged at most."""
+
+OUTLIER = 3.0
+"""Disagreement, in standard deviations, above which a match counts no more for the accuracy of odometry."""
+
+MIN_SHARE = 0.01
+"""Least deviation of odometry's headings as a share of the assumed one."""
+
 JUMP, MAX_SPEED = 1.0, 8.0
 """Step [m], and speed [m/s] added to it, from which no robot can have moved as odometry says."""
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """How well the headings of odometry have agreed with those of matches, by which the two are fused.
+
+    Attributes
+    ----------
+    rotation : float
+        Root mean squared disagreement as a share of what odometry of unknown quality is assumed to err.
+    samples : float
+        Matches that it rests on; the first ones are weighed against the assumption.
+    """
+
+    rotation: float = 1.0
+    samples: float = PRIOR_SAMPLES
+
+    def after(self, turn: float, drift: "Drift") -> "Accuracy":
+        """Return the accuracy after a match whose heading differs by a turn [rad] from that by odometry.
+
+        A single outlier, such as from a slipping wheel, counts little.
+        """
+        samples = min(self.samples + 1.0, MAX_SAMPLES)
+        disagreement = min(abs(turn) / assumed_deviation(drift.distance, drift.turn)[1], OUTLIER * self.rotation)
+        mean_square = self.rotation**2 + (disagreement**2 - self.rotation**2) / samples
+        return Accuracy(max(MIN_SHARE, float(np.sqrt(mean_square))), samples)
+
+    def information(self, distance: float, turn: float) -> Array:
+        """Return the inverse covariance of a motion by odometry.
+
+        Parameters
+        ----------
+        distance, turn : float
+            Length [m] of the path and sum [rad] of the absolute turns.
+        """
+        along, about = assumed_deviation(distance, turn)
+        return np.diag(1.0 / np.square([along, along, self.rotation * about]))
+
+
+def assumed_deviation(distance: float, turn: float) -> tuple[float, float]:
+    """Return the standard deviations [m], [rad] of a motion by odometry of unknown, low quality."""
+    return 0.05 + 0.2 * distance, 0.2 + 0.2 * turn
 
 
 @dataclass(frozen=True)
@@ -40,18 +91,6 @@ class Drift:
     def largest_error(self) -> tuple[float, float]:
         """Distance [m] and angle [rad] by which odometry may be wrong."""
         return WORST_PER_METRE * self.distance, WORST_PER_RADIAN * self.turn
-
-    @property
-    def information(self) -> Array:
-        """Inverse covariance of the motion."""
-        return odometry_information(np.array([self.distance, 0.0, self.turn]))
-
-
-def odometry_information(moved: Array) -> Array:
-    """Return the inverse covariance of a motion (x, y, yaw) by odometry alone, assumed to be inaccurate."""
-    distance, turn = float(np.hypot(moved[0], moved[1])), abs(float(moved[2]))
-    deviation = np.array([0.05 + 0.2 * distance, 0.05 + 0.2 * distance, 0.2 + 0.2 * turn])
-    return np.diag(1.0 / deviation**2)
 
 
 def twist_between(step: Array, elapsed_ns: int) -> tuple[float, float, float]:

@@ -32,7 +32,7 @@ CHAIN_WEIGHT = 0.01
 """Weight of the edges that the scans came with: they hold together what no pair ties, and bend little."""
 
 
-def refine_poses(clouds: Sequence[Cloud], poses: Array, edges: Sequence[Edge]) -> Array:
+def refine_poses(clouds: Sequence[Cloud], poses: Array, edges: Sequence[Edge], odometry: Sequence[Edge] = ()) -> Array:
     """Match overlapping pairs of key scans point to line and solve for all poses (after Lu, Milios 1997).
 
     Parameters
@@ -43,6 +43,8 @@ def refine_poses(clouds: Sequence[Cloud], poses: Array, edges: Sequence[Edge]) -
         Their poses, with loops closed.
     edges : sequence of Edge
         The pose graph that they come from.
+    odometry : sequence of Edge
+        Motions by odometry, which hold the headings along corridors where few walls are seen.
     """
     references = [build_reference(cloud.points, cloud.normals, REACH) for cloud in clouds]
     matched = [
@@ -50,6 +52,7 @@ def refine_poses(clouds: Sequence[Cloud], poses: Array, edges: Sequence[Edge]) -
         for edge in edges
         if not edge.closure
     ]
+    matched.extend(odometry)
     for first, second in _pairs(clouds, poses):
         cloud = clouds[second]
         guess = pose2.between(poses[first], poses[second])

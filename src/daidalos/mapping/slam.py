@@ -13,7 +13,7 @@ from daidalos.mapping.back_end import Correction, GraphSnapshot, find_correction
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.grid import OccupancyGrid, ScanGrid
 from daidalos.mapping.loop_closing import LoopCloser
-from daidalos.mapping.odometry import Drift, is_jump, odometry_information, twist_between
+from daidalos.mapping.odometry import Accuracy, Drift, is_jump, twist_between
 from daidalos.mapping.pose_graph import Edge, optimize, without_pose
 from daidalos.mapping.pose_graph_file import SavedGraph
 from daidalos.mapping.scan import Cloud, LaserScanData, scan_problem, to_cloud
@@ -132,6 +132,7 @@ class Slam:
         self._added_odom = np.zeros(3)
         self._added_stamp_ns = 0
         self._drift = Drift()
+        self._accuracy = Accuracy()
         self._start: Array | None = None
         self._session_begin = 0
         self._neighbours: list[int] = []
@@ -258,14 +259,17 @@ class Slam:
         is_early = 0 <= stamp_ns - self._added_stamp_ns < round(self.config.minimum_time_interval * 1e9)
         is_key = not is_early and self._has_moved(odom)
         if not (is_key or self.config.match_every_scan):
-            return ScanResult(predicted, problem=problem, information=self._drift.information)
+            return ScanResult(predicted, problem=problem, information=self._odometry_information())
         cloud = to_cloud(scan, self.config.max_laser_range, twist)
         if cloud.points.shape[0] < MIN_POINTS:
-            return ScanResult(predicted, problem=problem or _too_few(cloud), information=self._drift.information)
-        match = match_scan(self._local_map(), cloud, predicted, self._drift, self.config, thorough=is_key)
+            return ScanResult(predicted, problem=problem or _too_few(cloud), information=self._odometry_information())
+        certainty = self._odometry_information()
+        match = match_scan(self._local_map(), cloud, predicted, self._drift, certainty, self.config, thorough=is_key)
         self._last_pose = match.pose
-        information = match.information + self._drift.information
+        information = match.information + certainty
         if match.accepted:
+            if is_key:
+                self._accuracy = self._accuracy.after(match.turned, self._drift)
             self._drift = Drift()
         if not is_key:
             return ScanResult(match.pose, match.accepted, information=information, problem=problem)
@@ -289,7 +293,23 @@ class Slam:
         self._drift = self._drift.after(step)
         self._last_pose, self._last_odom = pose2.compose(self._last_pose, step), odom
         self._last_stamp_ns = stamp_ns
-        return ScanResult(self._last_pose, problem=problem, information=self._drift.information)
+        return ScanResult(self._last_pose, problem=problem, information=self._odometry_information())
+
+    def _odometry_edges(self) -> list[Edge]:
+        """Return the motions by odometry between the key scans of this session."""
+        odom = np.array([key.odom_pose for key in self._keys[self._session_begin :]]).reshape(-1, 3)
+        steps = pose2.between(odom[:-1], odom[1:])
+        return [
+            Edge(k, k + 1, step, self._motion_information(step)) for k, step in enumerate(steps, self._session_begin)
+        ]
+
+    def _motion_information(self, step: Array) -> Array:
+        """Return the inverse covariance of a step (x, y, yaw) by odometry."""
+        return self._accuracy.information(float(np.hypot(step[0], step[1])), abs(float(step[2])))
+
+    def _odometry_information(self) -> Array:
+        """Return the inverse covariance of the motion by odometry since a scan last corrected it."""
+        return self._accuracy.information(self._drift.distance, self._drift.turn)
 
     def grid(self, limit: int | None = None) -> OccupancyGrid:
         """Return the map, after at most `limit` scans were drawn or moved to where they belong."""
@@ -349,7 +369,7 @@ class Slam:
         from daidalos.mapping.refinement import refine_poses
 
         if len(self._keys) > 1:
-            self._move(refine_poses(self.key_clouds, self.key_poses, self._edges))
+            self._move(refine_poses(self.key_clouds, self.key_poses, self._edges, self._odometry_edges()))
 
     def move_keys(self, poses: Mapping[int, Array]) -> None:
         """Put key scans where a person says that they were taken, and optimize the others; the first one stays.
@@ -474,8 +494,8 @@ class Slam:
             self._poses = np.concatenate([self._poses, np.empty_like(self._poses)])
         self._poses[index] = match.pose
         measured = pose2.between(self._poses[first], match.pose)
-        moved = pose2.between(self._added_odom, key.odom_pose)
-        self._edges.append(Edge(first, index, measured, match.information + odometry_information(moved)))
+        moved = self._motion_information(pose2.between(self._added_odom, key.odom_pose))
+        self._edges.append(Edge(first, index, measured, match.information + moved))
         self._keys.append(key)
         self._added_odom, self._local = key.odom_pose, None
 

@@ -42,15 +42,25 @@ class ScanMatch:
         Inverse covariance in the frame of the scan that the match alone gives; zero where none was accepted.
     accepted : bool
         Whether the scan fits; otherwise the pose is the prediction.
+    turned : float
+        Heading [rad] of the prediction relative to where the scan alone fits best.
     """
 
     pose: Array
     information: Array
     accepted: bool
+    turned: float = 0.0
 
 
 def match_scan(
-    local: PointMap, cloud: Cloud, predicted: Array, drift: Drift, config: SlamConfig, *, thorough: bool
+    local: PointMap,
+    cloud: Cloud,
+    predicted: Array,
+    drift: Drift,
+    certainty: Array,
+    config: SlamConfig,
+    *,
+    thorough: bool,
 ) -> ScanMatch:
     """Match a scan against scans nearby.
 
@@ -64,6 +74,8 @@ def match_scan(
         Pose by odometry since the last match.
     drift : Drift
         Motion since then; the window that is searched covers what odometry may have erred in it.
+    certainty : ndarray, shape (3, 3)
+        Inverse covariance of that motion.
     config : SlamConfig
         Windows and thresholds.
     thorough : bool
@@ -74,7 +86,7 @@ def match_scan(
     if not thorough:
         near = local.refine(cloud.points, cloud.normals, predicted, iterations=15)
         if near.inlier_ratio > CERTAIN_INLIER_RATIO:
-            return _fused(predicted, drift.information, near)
+            return _fused(predicted, certainty, near)
     fine = _searched(local, cloud, predicted, _window(drift, config))
     if fine.inlier_ratio < NO_MATCH_INLIER_RATIO and config.use_response_expansion:
         fine = _searched(local, cloud, predicted, _window(drift, config, EXPANSION))
@@ -82,7 +94,7 @@ def match_scan(
             return _unmatched(predicted)
     if fine.inlier_ratio < config.link_match_minimum_response_fine:
         return _unmatched(predicted)
-    return _fused(predicted, drift.information, fine)
+    return _fused(predicted, certainty, fine)
 
 
 def _searched(local: PointMap, cloud: Cloud, predicted: Array, window: Window) -> Refinement:
@@ -144,4 +156,4 @@ def _fused(predicted: Array, certainty: Array, match: Refinement) -> ScanMatch:
     information = match_information(match.normal_matrix)
     gap = pose2.between(match.pose, predicted)
     shift = np.linalg.solve(information + certainty, certainty @ gap)
-    return ScanMatch(pose2.compose(match.pose, shift), information, accepted=True)
+    return ScanMatch(pose2.compose(match.pose, shift), information, accepted=True, turned=float(gap[2]))
