@@ -1,9 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from daidalos.common import pose2
+from daidalos.mapping.back_end import GraphSnapshot, find_correction
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.loop_closing import (
+    CONFIRMATIONS,
     DRIFT_OF_CLOSURE,
     DRIFT_PER_METRE,
     DRIFT_PER_RADIAN,
@@ -78,3 +82,40 @@ def test_the_latest_scans_are_no_loop() -> None:
     clouds, believed, true = round_trip((0.0, 0.0, 0.0))
     assert LoopCloser(SlamConfig()).search(clouds[:10], believed[:10], sequence(true[:10])) == []
     assert LoopCloser(SlamConfig()).search(clouds[:1], believed[:1], []) == []
+
+
+FAR_DRIFT = (0.25, -0.15, 0.04)
+
+
+def test_places_farther_away_than_the_search_distance_are_tried_as_far_as_the_drift_allows() -> None:
+    clouds, believed, true = round_trip(FAR_DRIFT)
+    closer = LoopCloser(SlamConfig(loop_search_maximum_distance=0.05))
+    found = []
+    for newest in range(30, 48):
+        count = newest + 1
+        closures = closer.search(clouds[:count], believed[:count], sequence(true[:count]))
+        assert len(closures) in (0, CONFIRMATIONS + 1)  # one match alone proves nothing
+        found.extend(closures)
+    assert found
+    for closure in found:
+        expected = pose2.between(true[closure.first], true[closure.second])
+        assert pose2.between(expected, closure.measurement) == pytest.approx(np.zeros(3), abs=0.02)
+
+
+def test_places_beyond_the_possible_drift_are_not_tried() -> None:
+    clouds, believed, true = round_trip((3.0, 2.0, 0.0))
+    closer = LoopCloser(SlamConfig(loop_search_maximum_distance=0.05))
+    for count in range(31, 49):
+        assert closer.search(clouds[:count], believed[:count], sequence(true[:count])) == []
+
+
+def test_a_wrong_closure_is_taken_out_again_by_right_ones() -> None:
+    clouds, believed, true = round_trip(FAR_DRIFT)
+    chain = [replace(edge, information=1e4 * np.eye(3)) for edge in sequence(true)]
+    wrong = Edge(3, 44, np.array([1.5, 0.5, 0.3]), 1e3 * np.eye(3), closure=True)
+    correction = find_correction(LoopCloser(SlamConfig()), GraphSnapshot(clouds, believed, [*chain, wrong], 0))
+    assert correction is not None
+    assert correction.poses is not None
+    assert all(edge is not wrong for edge in correction.edges)
+    assert [edge.second for edge in correction.edges if edge.closure] == [47]
+    assert pose2.between(true, correction.poses) == pytest.approx(np.zeros((48, 3)), abs=0.02)

@@ -54,7 +54,10 @@ class SlamConfig(Parameters):
     )
     do_loop_closing: bool = parameter(True, "Whether to look for places that were seen before.")
     loop_search_maximum_distance: float = parameter(
-        4.0, "Largest distance to an earlier key scan for its place to be tried.", unit="m", minimum=0.0
+        4.0,
+        "Largest distance to an earlier key scan for one match to close a loop; farther ones need three.",
+        unit="m",
+        minimum=0.0,
     )
     loop_match_minimum_chain_size: int = parameter(
         5, "Least number of earlier key scans in a row near the robot.", minimum=1

@@ -34,6 +34,19 @@ CHAIN_GAP = 3
 RETRY_INTERVAL = 3
 """Key scans to wait before a chain that was tried is tried again."""
 
+FAR_INTERVAL = 2
+FAR_PLACES = 2
+"""Of so many key scans one is compared with so many places farther away than the search distance."""
+
+CONFIRMATIONS = 2
+PENDING_SCANS = 40
+MIN_CONFIRMING_STEP = 2
+"""Other closures that must agree with one to a place far away, the key scans after which one that nothing confirms is
+dropped, and the key scans between two that confirm each other."""
+
+AGREEMENT, AGREEMENT_TURN = 0.3, 0.1
+"""How far [m], [rad] closures that agree may be apart."""
+
 RESOLUTION = 0.1
 """Step [m] of the search, and standard deviation [m] of a point in it."""
 
@@ -62,6 +75,8 @@ class LoopCloser:
     def __init__(self, config: SlamConfig) -> None:
         self.config = config
         self._tried: list[tuple[int, int]] = []
+        self._pending: list[Edge] = []
+        self._far_turn = 0
 
     def search(self, clouds: Sequence[Cloud], poses: Array, edges: Sequence[Edge]) -> list[Edge]:
         """Find closures between the newest key scan and chains of earlier ones.
@@ -81,25 +96,67 @@ class LoopCloser:
         old = max(0, newest - max(config.scan_buffer_size, QUERY_SCANS))
         distance = np.hypot(centres[:old, 0] - centres[newest, 0], centres[:old, 1] - centres[newest, 1])
         near = np.flatnonzero(distance < config.loop_search_maximum_distance)
-        if near.shape[0] == 0:
+        self._tried = [(scan, place) for scan, place in self._tried if newest - scan < RETRY_INTERVAL]
+        is_far_turn = newest % FAR_INTERVAL == 0 and old > 0
+        if near.shape[0] == 0 and not is_far_turn:
             return []
         drift = possible_drift(newest, poses, edges)
-        near = near[drift[near] > SETTLED_DRIFT]
-        self._tried = [(scan, place) for scan, place in self._tried if newest - scan < RETRY_INTERVAL]
+        closures = self._search_near(clouds, poses, near[drift[near] > SETTLED_DRIFT], distance, drift)
+        if is_far_turn and not closures:
+            far = np.flatnonzero((distance >= config.loop_search_maximum_distance) & (distance < drift[:old]))
+            closures = self._search_far(clouds, poses, far, drift)
+        return closures
+
+    def _search_near(
+        self, clouds: Sequence[Cloud], poses: Array, near: NDArray[np.intp], distance: Array, drift: Array
+    ) -> list[Edge]:
+        """Match the newest key scan with the closest place of each chain nearby."""
+        newest = poses.shape[0] - 1
         closures = []
-        for chain in np.split(near, np.flatnonzero(np.diff(near) > CHAIN_GAP) + 1):
-            if chain.shape[0] < config.loop_match_minimum_chain_size:
+        for chain in _chains(near):
+            if chain.shape[0] < self.config.loop_match_minimum_chain_size:
                 continue
             apart = distance[chain] + np.abs(pose2.wrap(poses[chain, 2] - poses[newest, 2]))
             closest = int(chain[np.argmin(apart)])
             if any(abs(closest - place) <= CHAIN_REACH for _, place in self._tried):
                 continue
             self._tried.append((newest, closest))
-            members = chain[np.abs(chain - closest) <= CHAIN_REACH]
-            closure = self._match(clouds, poses, members, closest, float(drift[closest]))
+            guess = pose2.between(poses[closest], poses[newest])
+            closure = self._match(clouds, poses, chain, closest, guess, float(drift[closest]))
             if closure is not None:
                 closures.append(closure)
         return closures
+
+    def _search_far(self, clouds: Sequence[Cloud], poses: Array, far: NDArray[np.intp], drift: Array) -> list[Edge]:
+        """Match the newest key scan with places where it may be by its drift; return closures that confirm each other.
+
+        The places are tried in turns, a few with each scan. One such match proves nothing, since rooms and corridors
+        look alike: several that agree along the way are taken together.
+        """
+        newest = poses.shape[0] - 1
+        places = [
+            int(chain[k])
+            for chain in _chains(far)
+            for k in range(len(chain) // 2 % CHAIN_REACH, len(chain), CHAIN_REACH)
+        ]
+        self._pending = [edge for edge in self._pending if newest - edge.second <= PENDING_SCANS]
+        # Where a match waits to be confirmed is looked at first.
+        expected = [edge.first for edge in self._pending[-1:]]
+        begin = self._far_turn % max(1, len(places))
+        turns = [*expected, *(places[begin:] + places[:begin])[:FAR_PLACES]]
+        self._far_turn = begin + FAR_PLACES
+        for place in turns:
+            members = np.arange(max(0, place - CHAIN_REACH), min(newest - QUERY_SCANS, place + CHAIN_REACH) + 1)
+            guess = np.array([0.0, 0.0, pose2.wrap(poses[newest, 2] - poses[place, 2])])
+            found = self._match(clouds, poses, members, place, guess, float(drift[place]))
+            if found is None:
+                continue
+            agreeing = [edge for edge in self._pending if _agree(edge, found, poses)]
+            self._pending.append(found)
+            if len(agreeing) >= CONFIRMATIONS:
+                self._pending = []
+                return [*agreeing, found]
+        return []
 
     def forget(self, index: int) -> None:
         """Follow the removal of a key scan: those after it are numbered one lower."""
@@ -108,10 +165,13 @@ class LoopCloser:
             for scan, place in self._tried
             if index not in (scan, place)
         ]
+        self._pending = []
 
     def _match(
-        self, clouds: Sequence[Cloud], poses: Array, members: NDArray[np.intp], closest: int, drift: float
+        self, clouds: Sequence[Cloud], poses: Array, chain: NDArray[np.intp], closest: int, guess: Array, drift: float
     ) -> Edge | None:
+        """Match the newest key scans with those of a chain around its closest one, from a guess relative to that."""
+        members = chain[np.abs(chain - closest) <= CHAIN_REACH]
         newest = poses.shape[0] - 1
         latest = np.arange(max(0, newest - QUERY_SCANS + 1), newest + 1)
         place = PointMap([clouds[j] for j in members], pose2.between(poses[closest], poses[members]))
@@ -124,7 +184,7 @@ class LoopCloser:
             distance_penalty=0.005,
             minimum_score=max(MIN_LIKELIHOOD, self.config.loop_match_minimum_response_coarse),
         )
-        match = place.correlate(points, pose2.between(poses[closest], poses[newest]), window)
+        match = place.correlate(points, guess, window)
         if match is None:
             return None
         fine = place.refine(points, normals, match.pose)
@@ -133,6 +193,24 @@ class LoopCloser:
             return None
         information = match_information(fine.normal_matrix / QUERY_SCANS)
         return Edge(closest, newest, fine.pose, information, closure=True)
+
+
+def _chains(indices: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Split indices in order where they have larger gaps."""
+    if not len(indices):
+        return []
+    return np.split(indices, np.flatnonzero(np.diff(indices) > CHAIN_GAP) + 1)
+
+
+def _agree(first: Edge, second: Edge, poses: Array) -> bool:
+    """Return whether two closures of different scans lead the same way, by the poses between their ends."""
+    if not second.second - first.second >= MIN_CONFIRMING_STEP or abs(second.first - first.first) > PENDING_SCANS:
+        return False
+    on_map = pose2.compose(pose2.between(poses[first.first], poses[second.first]), second.measurement)
+    gap = pose2.between(
+        pose2.between(first.measurement, on_map), pose2.between(poses[first.second], poses[second.second])
+    )
+    return bool(np.hypot(gap[0], gap[1]) < AGREEMENT and abs(gap[2]) < AGREEMENT_TURN)
 
 
 def possible_drift(source: int, poses: Array, edges: Sequence[Edge]) -> Array:

@@ -13,7 +13,7 @@ WORST_PER_METRE = 0.5
 WORST_PER_RADIAN = 0.5
 """Largest error [m/m], [rad/rad] for which a place is searched."""
 
-PRIOR_SAMPLES, MAX_SAMPLES = 5.0, 200.0
+PRIOR_SAMPLES, MAX_SAMPLES = 3.0, 50.0
 """Matches that the assumption about odometry counts as, and over which its accuracy is averaged at most."""
 
 OUTLIER = 3.0

@@ -296,11 +296,12 @@ class Slam:
         return ScanResult(self._last_pose, problem=problem, information=self._odometry_information())
 
     def _odometry_edges(self) -> list[Edge]:
-        """Return the motions by odometry between the key scans of this session."""
+        """Return the motions by odometry between the key scans of this session; where wheels slipped they are false."""
         odom = np.array([key.odom_pose for key in self._keys[self._session_begin :]]).reshape(-1, 3)
         steps = pose2.between(odom[:-1], odom[1:])
         return [
-            Edge(k, k + 1, step, self._motion_information(step)) for k, step in enumerate(steps, self._session_begin)
+            Edge(k, k + 1, step, self._motion_information(step), closure=True)
+            for k, step in enumerate(steps, self._session_begin)
         ]
 
     def _motion_information(self, step: Array) -> Array:
