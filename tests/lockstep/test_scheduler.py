@@ -1,5 +1,6 @@
 """Threads, locks and time of a lock-step run, without its replacement of the standard library."""
 
+import sys
 from collections.abc import Callable
 
 import pytest
@@ -37,6 +38,29 @@ def test_threads_sleep_in_the_order_of_their_deadlines(run: Scheduler) -> None:
     run.run()
     assert log == [("b", 10), ("a", 30), ("b", 30), ("a", 40), ("b", 50)]
     assert run.threads == {}
+
+
+def test_threads_that_start_others_and_wait_do_not_use_up_the_depth_of_recursion(run: Scheduler) -> None:
+    log: list[int] = []
+
+    def deeper(levels: int, then: Callable[[], None]) -> None:
+        if levels:
+            deeper(levels - 1, then)
+        else:
+            then()
+
+    def starter(number: int) -> Callable[[], None]:
+        def wait() -> None:
+            log.append(number)
+            if number:
+                start(run, starter(number - 1))
+            run.sleep_until(run.now_ns + 1)
+
+        return lambda: deeper(sys.getrecursionlimit() // 10, wait)
+
+    start(run, starter(40))
+    run.run()
+    assert log == list(range(40, -1, -1))
 
 
 def test_a_lock_is_handed_on_in_the_order_of_asking(run: Scheduler) -> None:

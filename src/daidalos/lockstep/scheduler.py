@@ -184,6 +184,7 @@ class Scheduler:
         self._numbers = itertools.count(1)
         self._order = itertools.count()
         self._owner: Owner | None = None
+        self._starting: Thread | None = None
         self._at_instant = 0
         self._busy: dict[str, int] = {}
         self._stopped = False
@@ -308,6 +309,9 @@ class Scheduler:
         self._stopped = False
         while (following := self._next()) is not None:
             self._enter(following)
+            while (following := self._starting) is not None:
+                self._starting = None
+                self._enter(following)
             self.current = None
         self._leave_owner()
         if self._error is not None:
@@ -324,6 +328,10 @@ class Scheduler:
         loop = asyncio._get_running_loop()
         following = self._next()
         if following is None:
+            self.hub.switch()
+        elif not following.started:
+            # A greenlet counts the depth of recursion from that of the one that starts it: `run` is the shallowest.
+            self._starting = following
             self.hub.switch()
         elif following is not thread:
             self._enter(following)
