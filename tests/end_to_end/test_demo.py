@@ -40,9 +40,9 @@ def test_headless_reaches_three_goals_and_touches_nothing(domain: int) -> None:
     assert report["map"]["walls_found"] > 0.8
     assert report["map"]["walls_true"] > 0.98
     assert report["real_time_factor"] > 0.9
-    assert report["processes"] >= 3
+    assert report["processes"] <= 5, "the launch, one container, and what spawns the robot and turns it at the start"
     assert 0 < report["cpu_percent"] < 200
-    assert 100 < report["peak_rss_mb"] < 2000
+    assert 100 < report["peak_rss_mb"] < 600
 
 
 @pytest.mark.slow

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import threading
 
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
 from daidalos.common import tracebacks
-from daidalos.nodes.runner import fail
+from daidalos.nodes.runner import fail, make_executor
 
 
 class NodeThread:
-    """Spins a node until `stop`; an error in one of its callbacks ends the process."""
+    """Spins a node until `stop`; an error in one of its callbacks ends the process.
 
-    def __init__(self, node: Node) -> None:
-        self._executor = SingleThreadedExecutor(context=node.context)
+    Parameters
+    ----------
+    node : Node
+    threads : int
+        How many of its callbacks may run at the same time.
+    """
+
+    def __init__(self, node: Node, threads: int = 1) -> None:
+        self._executor = make_executor(threads, node.context)
         self._executor.add_node(node)
         self._thread = threading.Thread(target=self._spin, name=node.get_name(), daemon=True)
         self._thread.start()

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, TypeVar
 from daidalos.common.errors import UserError as UserError
 
 if TYPE_CHECKING:
+    from rclpy.context import Context
+    from rclpy.executors import Executor
     from rclpy.node import Node
 
     NodeT = TypeVar("NodeT", bound=Node)
@@ -122,13 +124,12 @@ def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, thread
         The exit status.
     """
     import rclpy
-    from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 
     def body() -> None:
         rclpy.init(args=list(args) if args is not None else None)
         node = create(make_node)
         try:
-            executor = SingleThreadedExecutor() if threads == 1 else MultiThreadedExecutor(threads)
+            executor = make_executor(threads)
             executor.add_node(node)
             executor.spin()
         finally:
@@ -136,3 +137,12 @@ def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, thread
             node.destroy_node()
 
     return run_program(body)
+
+
+def make_executor(threads: int, context: Context | None = None) -> Executor:
+    """Return an executor that runs so many callbacks at a time, in the default context where None."""
+    from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+
+    if threads == 1:
+        return SingleThreadedExecutor(context=context)
+    return MultiThreadedExecutor(threads, context=context)

@@ -32,6 +32,7 @@ class ROSAdapter:
         self.__ros_executor: Any = None
         self.__thread: threading.Thread | None = None
         self._users: list[asyncio.Future[None]] = []
+        self._stopping = False
         if autostart:
             self.start()
 
@@ -142,6 +143,9 @@ def run_with_ros_node(context: LaunchContext, function: Callable[..., None], *ar
 
 
 def _stop(adapter: ROSAdapter, context: LaunchContext) -> None:
+    if adapter._stopping:  # a process whose end shuts the launch down may end in the course of a shutdown
+        return
+    adapter._stopping = True
     context.add_completion_future(context.running_loop.create_task(_stop_when_unused(adapter)))
 
 

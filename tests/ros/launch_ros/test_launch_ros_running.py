@@ -6,7 +6,15 @@ import types
 
 import pytest
 from launch import LaunchContext, LaunchDescription, LaunchService
-from launch.actions import GroupAction, LogInfo, OpaqueFunction, RegisterEventHandler, Shutdown, TimerAction
+from launch.actions import (
+    ExecuteProcess,
+    GroupAction,
+    LogInfo,
+    OpaqueFunction,
+    RegisterEventHandler,
+    Shutdown,
+    TimerAction,
+)
 from launch.conditions import IfCondition
 from launch.event_handlers import OnProcessIO
 from launch.substitutions import TextSubstitution
@@ -370,6 +378,11 @@ def test_one_node_for_a_launch():
 
     run(OpaqueFunction(function=look), OpaqueFunction(function=look), Shutdown())
     assert seen[0][0] is seen[0][1] is seen[1][0]
+
+
+def test_a_second_shutdown_is_no_error():
+    process = ExecuteProcess(cmd=[sys.executable, "-c", "input()"], on_exit=Shutdown())
+    run(OpaqueFunction(function=lambda context: get_ros_node(context) and None), process, Shutdown(), Shutdown())
 
 
 def test_timer_and_simulated_time():

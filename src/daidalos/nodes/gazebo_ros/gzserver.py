@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import WeakSet
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -83,7 +83,8 @@ class GzServer(Node):
 
     Parameters
     ----------
-    start : Start
+    start : Start or callable
+        Called, where it is a function, when the node can declare parameters.
     quit_simulator : callable
         Ends the process.
     **kwargs
@@ -95,9 +96,12 @@ class GzServer(Node):
         When the world cannot be used.
     """
 
+    THREADS: ClassVar[int] = 2
+    """Callbacks that run at a time: commands go on while a service waits for the simulation."""
+
     def __init__(
         self,
-        start: Start | None = None,
+        start: Start | Callable[[], Start] | None = None,
         quit_simulator: Callable[[], None] = lambda: signal.raise_signal(signal.SIGTERM),
         **kwargs: Any,
     ) -> None:
@@ -113,7 +117,7 @@ class GzServer(Node):
         from daidalos.nodes.gazebo_ros._state_topics import StateTopics
         from daidalos.simulation import Simulation
 
-        start = start or Start()
+        start = (start() if callable(start) else start) or Start()
         described = read_world(start.world)
         by_default = {"real_time_factor": wanted_speed(described.physics)}
         settings = declare(self, GzServerParameters, reconfigure=self._reconfigure, defaults=by_default)
@@ -246,7 +250,7 @@ def serve(start: Start, seed: int | None = None, verbose: bool = False) -> int:
         except (DescriptionError, SimulationError) as error:
             raise UserError(str(error)) from None
 
-    return run(make, threads=2)
+    return run(make, threads=GzServer.THREADS)
 
 
 def main() -> int:

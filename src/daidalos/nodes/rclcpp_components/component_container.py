@@ -14,7 +14,10 @@ from daidalos.nodes.runner import run
 
 
 class ComponentContainer(Node):
-    """Loads nodes; each is spun in a thread of its own, so that none holds up another."""
+    """Loads nodes; each is spun in a thread of its own, so that none holds up another.
+
+    A node whose class has an attribute ``THREADS`` above 1 gets an executor with so many.
+    """
 
     def __init__(self, name: str = "ComponentManager", **kwargs: Any) -> None:
         super().__init__(name, **kwargs)
@@ -36,7 +39,7 @@ class ComponentContainer(Node):
             return self._refused(response, f"Component constructor threw an exception: {error}")
         if request.log_level:
             node.get_logger().set_level(request.log_level)
-        self._loaded[self._next_id] = (node, NodeThread(node))
+        self._loaded[self._next_id] = (node, NodeThread(node, getattr(kind, "THREADS", 1)))
         response.unique_id = self._next_id
         self._next_id += 1
         response.full_node_name = node.get_fully_qualified_name()
