@@ -20,6 +20,9 @@ class ScriptedTask:
         self.ticks -= 1
         return self.outcome if self.ticks < 0 else None
 
+    def feedback(self):
+        return self.robot.feedback
+
     def update(self, goal):
         self.robot.log.append(f"update {self.name}")
         self.robot.goals[self.name] = dict(goal)
@@ -40,6 +43,7 @@ class ScriptedRobot:
         self.speed = 0.0
         self.heard = {}
         self.transforms = set()
+        self.feedback = {}
 
     def robot_pose(self, frame="", base=""):
         return self.pose

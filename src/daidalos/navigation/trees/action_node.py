@@ -32,12 +32,15 @@ class ActionNode(Node):
         Inputs that are passed on to the running task when they change.
     RECOVERY : bool
         Whether it counts as a recovery; an input `is_recovery` overrules.
+    HAS_FEEDBACK : bool
+        Whether fields of the action's feedback are output while it runs.
     """
 
     INTERFACE: ClassVar[str] = ""
     SERVER: ClassVar[str] = ""
     UPDATES: ClassVar[tuple[str, ...]] = ()
     RECOVERY: ClassVar[bool] = False
+    HAS_FEEDBACK: ClassVar[bool] = False
 
     def __init__(self, ports: Ports, context: TreeContext) -> None:
         super().__init__(ports, context)
@@ -81,6 +84,8 @@ class ActionNode(Node):
         """Poll the task."""
         if self._task is None:
             return Status.FAILURE
+        for key, value in self._task.feedback().items() if self.HAS_FEEDBACK else ():
+            self.ports.set(key, value)
         outcome = self._task.poll()
         if outcome is None:
             self._pass_changes_on(self._task)

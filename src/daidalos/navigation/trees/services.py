@@ -39,6 +39,9 @@ class Task(Protocol):
     def poll(self) -> Outcome | None:
         """Return the outcome; `None` while the task runs. Never blocks."""
 
+    def feedback(self) -> Mapping[str, Any]:
+        """Return values of output ports from the latest feedback; empty where none has come since the last call."""
+
     def update(self, goal: Mapping[str, Any]) -> None:
         """Replace the goal (such as a new path while following one)."""
 

@@ -144,6 +144,10 @@ class _Failed:
         """Return the failure."""
         return Outcome(False, error_code="UNKNOWN", error_msg=self._reason)
 
+    def feedback(self) -> Mapping[str, Any]:
+        """Return nothing: there is none."""
+        return {}
+
     def update(self, goal: Mapping[str, Any]) -> None:
         """Do nothing."""
 
@@ -162,6 +166,10 @@ class _ServiceTask:
         """Return whether the answer means success, once it has come."""
         return Outcome(self._node.is_success(self._future.result())) if self._future.done() else None
 
+    def feedback(self) -> Mapping[str, Any]:
+        """Return nothing: there is none."""
+        return {}
+
     def update(self, goal: Mapping[str, Any]) -> None:
         """Do nothing: a call cannot be changed."""
 
@@ -179,6 +187,7 @@ class _ActionTask:
         self._server = server
         self._handle: Any = None
         self._result: Any = None
+        self._feedback: Any = None
         self._failure = ""
         self._generation = 0
         self._send(inputs)
@@ -190,7 +199,7 @@ class _ActionTask:
             return
         generation = self._generation
         goal = _filled(self._client.action_type.Goal(), self._node.goal(inputs))
-        future = self._client.send_goal_async(goal)
+        future = self._client.send_goal_async(goal, partial(self._on_feedback, generation))
         future.add_done_callback(lambda sent: self._on_sent(sent.result(), generation))
 
     def _on_sent(self, handle: Any, generation: int) -> None:
@@ -202,6 +211,10 @@ class _ActionTask:
             return
         self._handle = handle
         handle.get_result_async().add_done_callback(lambda answer: self._on_result(answer.result(), generation))
+
+    def _on_feedback(self, generation: int, message: Any) -> None:
+        if generation == self._generation:
+            self._feedback = message.feedback
 
     def _on_result(self, answer: Any, generation: int) -> None:
         if generation == self._generation:
@@ -218,6 +231,11 @@ class _ActionTask:
             return Outcome(True, self._node.outputs(result))
         code = error_name(result) if hasattr(result, "error_code") else "UNKNOWN"
         return Outcome(False, error_code=code, error_msg=getattr(result, "error_msg", ""))
+
+    def feedback(self) -> Mapping[str, Any]:
+        """Return the latest feedback for output ports, once."""
+        latest, self._feedback = self._feedback, None
+        return {} if latest is None else self._node.outputs(latest)
 
     def update(self, goal: Mapping[str, Any]) -> None:
         """Send another goal, which the server takes up where it is."""

@@ -7,7 +7,7 @@ from daidalos.navigation.trees.action_node import SERVER, ActionNode
 from daidalos.navigation.trees.node import Port
 
 
-class _Cancel(ActionNode):
+class CancelGoals(ActionNode):
     """Action node that cancels the goals of an action; it succeeds once the server has answered."""
 
     INTERFACE = "action_msgs/srv/CancelGoal"
@@ -25,42 +25,42 @@ class _Cancel(ActionNode):
         return {}
 
 
-class CancelControl(_Cancel):
+class CancelControl(CancelGoals):
     """Action node that cancels the following of paths."""
 
     names = ("CancelControl",)
     ACTION = "follow_path"
 
 
-class CancelSpin(_Cancel):
+class CancelSpin(CancelGoals):
     """Action node that cancels rotations in place."""
 
     names = ("CancelSpin",)
     ACTION = "spin"
 
 
-class CancelBackUp(_Cancel):
+class CancelBackUp(CancelGoals):
     """Action node that cancels driving backwards."""
 
     names = ("CancelBackUp",)
     ACTION = "backup"
 
 
-class CancelDriveOnHeading(_Cancel):
+class CancelDriveOnHeading(CancelGoals):
     """Action node that cancels driving straight."""
 
     names = ("CancelDriveOnHeading",)
     ACTION = "drive_on_heading"
 
 
-class CancelAssistedTeleop(_Cancel):
+class CancelAssistedTeleop(CancelGoals):
     """Action node that cancels assisted teleoperation."""
 
     names = ("CancelAssistedTeleop",)
     ACTION = "assisted_teleop"
 
 
-class CancelWait(_Cancel):
+class CancelWait(CancelGoals):
     """Action node that cancels waiting."""
 
     names = ("CancelWait",)

@@ -77,6 +77,44 @@ class RemovePassedGoals(Node):
         return Status.SUCCESS
 
 
+class AppendGoalPoseToGoals(Node):
+    """Action node that adds a pose to the end of goals."""
+
+    names = ("AppendGoalPoseToGoals",)
+    PORTS: ClassVar[dict[str, Port]] = {
+        "input_goals": Port(entry, None),
+        "goal_pose": Port(entry),
+        "output_goals": Port(entry, output=True),
+    }
+
+    def update(self) -> Status:
+        """Add the pose; fail where there is none."""
+        pose = self.ports.get("goal_pose")
+        if pose is None:
+            return Status.FAILURE
+        self.ports.set("output_goals", [*goals_of(self.ports.get("input_goals")), pose])
+        return Status.SUCCESS
+
+
+class GetNextFewGoals(Node):
+    """Action node that outputs the first of some goals."""
+
+    names = ("GetNextFewGoals",)
+    PORTS: ClassVar[dict[str, Port]] = {
+        "input_goals": Port(entry),
+        "num_goals": Port(int),
+        "output_goals": Port(entry, output=True),
+    }
+
+    def update(self) -> Status:
+        """Take the first ones; fail where there are none."""
+        goals = goals_of(self.ports.get("input_goals"))
+        if not goals:
+            return Status.FAILURE
+        self.ports.set("output_goals", goals[: max(self.ports.get("num_goals"), 0)])
+        return Status.SUCCESS
+
+
 def goals_of(value: Any) -> list[Any]:
     """Return the poses of a list of goals, which newer releases of Nav2 wrap in a message with a field `goals`."""
     return list(getattr(value, "goals", value) or [])

@@ -28,6 +28,13 @@ class WouldAControllerRecoveryHelp(WouldAPlannerRecoveryHelp):
     )
 
 
+class WouldARouteRecoveryHelp(WouldAPlannerRecoveryHelp):
+    """Condition node that succeeds for errors of routes that a recovery may resolve."""
+
+    names = ("WouldARouteRecoveryHelp",)
+    HELPED: ClassVar[frozenset[str]] = frozenset({"UNKNOWN", "NO_VALID_ROUTE", "TIMEOUT"})
+
+
 class WouldASmootherRecoveryHelp(WouldAPlannerRecoveryHelp):
     """Condition node that succeeds for smoother errors that a recovery may resolve."""
 
