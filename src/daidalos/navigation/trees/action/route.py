@@ -35,7 +35,7 @@ class ComputeRoute(ActionNode):
 
 
 class ComputeAndTrackRoute(ActionNode):
-    """Action node that finds a route and runs until the robot is at its end; it outputs where the robot is meanwhile."""
+    """Action node that finds a route and tracks the robot to its end, with the progress as outputs."""
 
     names = ("ComputeAndTrackRoute",)
     INTERFACE = "nav2_msgs/action/ComputeAndTrackRoute"
