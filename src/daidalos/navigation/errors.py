@@ -156,3 +156,43 @@ class InvalidScorerUse(RouteError):
     """Scorer that lacks what it needs in the request."""
 
     code = "INVALID_EDGE_SCORER_USE"
+
+
+class DockingError(NavigationError):
+    """Failure to dock or undock; the message gives the reason."""
+
+
+class DockNotInDatabase(DockingError):
+    """Dock that the server does not know."""
+
+    code = "DOCK_NOT_IN_DB"
+
+
+class DockNotValid(DockingError):
+    """Dock of an unknown type, or without a usable pose."""
+
+    code = "DOCK_NOT_VALID"
+
+
+class FailedToStage(DockingError):
+    """Pose in front of the dock that was not reached."""
+
+    code = "FAILED_TO_STAGE"
+
+
+class FailedToDetectDock(DockingError):
+    """Dock that is not seen."""
+
+    code = "FAILED_TO_DETECT_DOCK"
+
+
+class FailedToControl(DockingError):
+    """Dock or staging pose that was not reached in time, or an obstacle on the way."""
+
+    code = "FAILED_TO_CONTROL"
+
+
+class FailedToCharge(DockingError):
+    """Dock that does not charge."""
+
+    code = "FAILED_TO_CHARGE"

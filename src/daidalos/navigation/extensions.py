@@ -9,10 +9,12 @@ from daidalos.common.extensions import Kind, classes_in
 
 if TYPE_CHECKING:
     from daidalos.navigation import contracts
+    from daidalos.navigation.docking import contracts as docking
     from daidalos.navigation.routes import contracts as routes
     from daidalos.navigation.trees.node import TreeNode
 
 _CONTRACTS = "daidalos.navigation.contracts"
+_DOCKING = "daidalos.navigation.docking"
 _ROUTES = "daidalos.navigation.routes"
 
 COSTMAP_LAYERS: Kind[contracts.Layer] = Kind(
@@ -106,6 +108,13 @@ ROUTE_OPERATIONS: Kind[routes.RouteOperation] = Kind(
     "is carried out on the way along a route; named in `operations` of the route server",
     partial(classes_in, f"{_ROUTES}.operations"),
 )
+DOCK_TYPES: Kind[docking.DockType] = Kind(
+    "dock_type",
+    "daidalos.dock_types",
+    f"{_DOCKING}.contracts:DockType",
+    "says where a robot waits before a dock, and when it is docked; named in `dock_plugins` of the docking server",
+    partial(classes_in, f"{_DOCKING}.docks"),
+)
 TREE_NODES: Kind[TreeNode] = Kind(
     "tree_node",
     "daidalos.tree_nodes",
@@ -130,5 +139,6 @@ KINDS = (
     GRAPH_FILE_LOADERS,
     EDGE_SCORERS,
     ROUTE_OPERATIONS,
+    DOCK_TYPES,
     TREE_NODES,
 )

@@ -1,0 +1,1 @@
+"""Docking: types of docks, their database, and the approach to them."""

@@ -1,0 +1,1 @@
+"""Types of docks, one class each."""
