@@ -6,6 +6,7 @@ import trimesh
 from scipy.spatial import ConvexHull, cKDTree
 
 from daidalos.description.meshes import TriangleMesh
+from daidalos.simulation.conversion.convex import hull_of_points
 from daidalos.simulation.conversion.decomposition import MAX_PARTS, decompose, sample_surface
 
 
@@ -52,12 +53,22 @@ def test_an_open_box_keeps_its_opening():
     parts = decompose(mesh_of(open_box))
     assert not covered(parts, np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.45], [0.3, 0.3, 0.2]])).any()
     surface = sample_surface(mesh_of(open_box), 0.05)
-    nearest, _ = cKDTree(np.concatenate(parts)).query(surface)
+    sides = [sample_surface(hull_of_points(part), 0.02) for part in parts]
+    nearest, _ = cKDTree(np.concatenate(sides)).query(surface)
     assert nearest.max() < 0.05
 
 
+@pytest.mark.parametrize("corners", [((0, 0, 0), (4, 0, 0), (4, 0.02, 0)), ((0, 0, 0), (1, 0, 0), (0.3, 0.8, 0))])
+def test_samples_are_as_near_as_wanted_and_slivers_have_few(corners):
+    triangle = TriangleMesh(np.array(corners, dtype=float), np.array([[0, 1, 2]], dtype=np.int32))
+    samples = sample_surface(triangle, 0.05)
+    random = np.random.default_rng(1).dirichlet((1, 1, 1), 1000) @ triangle.vertices
+    assert cKDTree(samples).query(random)[0].max() < 0.075  # at most one in a cell
+    assert len(samples) < 300
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("size", [0.02, 30.0])
+@pytest.mark.parametrize("size", [0.012, 30.0])
 def test_the_tolerance_follows_the_size(size):
     wall = ring(0.8 * size, size, 0.3 * size, 12)
     parts = decompose(mesh_of(wall))

@@ -59,8 +59,8 @@ def convex_parts(
     pieces = connected_pieces(mesh)
     check_cancelled(is_cancelled)
     if not decompose and len(pieces) > MAX_HULLS:
-        return [_hull(mesh.vertices)], True
-    hulls = [_hull(piece.vertices) for piece in pieces]
+        return [hull_of_points(mesh.vertices)], True
+    hulls = [hull_of_points(piece.vertices) for piece in pieces]
     check_cancelled(is_cancelled)
     convex = [_is_convex(piece, hull) for piece, hull in zip(pieces, hulls, strict=True)]
     if all(convex) or not decompose:
@@ -71,7 +71,7 @@ def convex_parts(
         _log.info("splitting a mesh of %d triangles into convex parts; the result is kept", len(mesh.faces))
         parts = []
         for piece, hull, is_convex in zip(pieces, hulls, convex, strict=True):
-            parts += [hull] if is_convex else [_hull(points) for points in decomposition.decompose(piece, is_cancelled)]
+            parts += [hull] if is_convex else [hull_of_points(points) for points in decomposition.decompose(piece, is_cancelled)]
         _save(file, parts)
     return parts, True
 
@@ -131,7 +131,7 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "daidalos"
 
 
-def _hull(vertices: np.ndarray) -> TriangleMesh:
+def hull_of_points(vertices: np.ndarray) -> TriangleMesh:
     """Return the convex hull; flat meshes are thickened to the minimum that a solid needs."""
     from scipy.spatial import ConvexHull
 

@@ -8,6 +8,7 @@ result is the same on every machine.
 
 from __future__ import annotations
 
+import functools
 import heapq
 import itertools
 from collections.abc import Callable
@@ -17,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from daidalos.description.meshes import TriangleMesh
+from daidalos.simulation.conversion.facets import convex_facets
 
-VERSION = 2
+VERSION = 3
 """Changes with the results, so that kept ones are not taken for those of another method."""
 MAX_PARTS = 32
 _TOLERANCE = (0.01, 0.03, 0.06)
@@ -28,6 +30,9 @@ _FINEST = 200
 _SPACING = 0.5
 """Distance of surface samples as a share of the tolerance."""
 _MAX_SAMPLES = 30_000
+_GRID_RATIO = 2**0.5
+"""Ratio between the steps of two grids of samples on triangles."""
+_MAX_STEPS = 400
 _MAX_CELLS = 100_000
 _HULL_SAMPLES = 30
 """Number of samples along a hull whose distances to the surface are measured."""
@@ -73,6 +78,9 @@ def decompose(mesh: TriangleMesh, is_cancelled: Callable[[], bool] = lambda: Fal
     ------
     Cancelled
     """
+    facets = convex_facets(mesh, MAX_PARTS)
+    if facets is not None:
+        return facets
     extent = float(np.ptp(mesh.vertices, axis=0).max())
     least, share, most = _TOLERANCE
     tolerance = max(min(max(least, share * extent), most), extent / _FINEST)
@@ -107,14 +115,19 @@ def check_cancelled(is_cancelled: Callable[[], bool]) -> None:
 def sample_surface(mesh: TriangleMesh, spacing: float) -> Points:
     """Return a mesh's vertices and points on its triangles at most about `spacing` [m] apart, at most one in a cell."""
     corners = mesh.vertices[mesh.faces]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
-    spacing = max(spacing, float(np.sqrt(area / _MAX_SAMPLES)))
-    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    steps = np.maximum(np.ceil(edges / spacing).astype(int), 1)
+    doubled = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    spacing = max(spacing, float(np.sqrt(doubled.sum() / 2 / _MAX_SAMPLES)))
+    edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+    longest = edges.argmax(axis=1)
+    # Triangles with their longest edge last; slivers get few rows along it.
+    corners = corners[np.arange(len(corners))[:, None], (longest[:, None] + [2, 0, 1]) % 3]
+    length = edges[np.arange(len(edges)), longest]
+    along = _grid_steps(length / spacing)
+    across = _grid_steps(doubled / np.maximum(length, 1e-300) / spacing)
     samples = [mesh.vertices[np.unique(mesh.faces)]]
-    for count in np.unique(steps[steps > 1]):
-        weights = _barycentric_grid(min(int(count), 400))
-        samples.append(np.einsum("wk,fkd->fwd", weights, corners[steps == count]).reshape(-1, 3))
+    for one, other in np.unique(np.stack((along, across), axis=1)[along > 1], axis=0):
+        chosen = corners[(along == one) & (across == other)]
+        samples.append((_barycentric_grid(int(one), int(other)) @ chosen).reshape(-1, 3))
     points = np.concatenate(samples)
     cells = np.floor((points - points.min(axis=0)) / spacing).astype(np.int64)
     # One number for each cell: rows take ten times as long to sort.
@@ -145,11 +158,18 @@ def _same_plane(normal: Points, offset: float, plane: Points, tolerance: float) 
     return abs(cosine) > _PARALLEL and abs(offset - np.sign(cosine) * plane[3]) < tolerance
 
 
-def _barycentric_grid(steps: int) -> Points:
-    i, j = np.meshgrid(np.arange(steps + 1), np.arange(steps + 1), indexing="ij")
-    inside = i + j <= steps
-    u, v = i[inside] / steps, j[inside] / steps
-    return np.stack((1.0 - u - v, u, v), axis=1)
+def _grid_steps(wanted: Points) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """Return numbers of steps, few distinct ones, none less than wanted."""
+    exponents = np.ceil(np.log(np.clip(wanted, 1.0, _MAX_STEPS)) / np.log(_GRID_RATIO) - 1e-9)
+    return np.ceil(_GRID_RATIO**exponents - 1e-9).astype(np.int64)
+
+
+@functools.lru_cache(maxsize=256)
+def _barycentric_grid(along: int, across: int) -> Points:
+    """Return weights of a triangle's corners: rows from the first corner to the opposite edge, points along each."""
+    rows, steps = np.meshgrid(np.linspace(0, 1, across + 1), np.linspace(0, 1, along + 1), indexing="ij")
+    height, share = rows[1:].ravel(), steps[1:].ravel()  # without the corner itself
+    return np.stack((1.0 - height, height * (1.0 - share), height * share), axis=1)
 
 
 def _points_inside(surface: Points, spacing: float) -> Points:
@@ -183,7 +203,9 @@ def _concavity(points: Points, tolerance: float) -> float:
         return 0.0
     used, index = np.unique(hull.simplices, return_inverse=True)
     hull_mesh = TriangleMesh(points[used], index.reshape(-1, 3).astype(np.int32))
-    distance, _ = cKDTree(points).query(sample_surface(hull_mesh, max(tolerance, extent / _HULL_SAMPLES)))
+    # A tree that is searched once: balancing it takes longer than the searches gain.
+    tree = cKDTree(points, balanced_tree=False, compact_nodes=False)
+    distance, _ = tree.query(sample_surface(hull_mesh, max(tolerance, extent / _HULL_SAMPLES)))
     return float(distance.max())
 
 
