@@ -35,8 +35,9 @@ def test_a_wall_with_a_doorway_keeps_it_open():
     outline = [(0, 0), (2, 0), (2, 2), (3, 2), (3, 0), (5, 0), (5, 3), (0, 3)]  # x, z
     triangles = [(0, 1, 2), (0, 2, 7), (2, 6, 7), (2, 3, 6), (3, 4, 5), (3, 5, 6)]
     wall = TriangleMesh(np.array([(x, 0.0, z) for x, z in outline]), np.array(triangles, dtype=np.int32))
-    parts = convex_facets(wall, 32)
-    assert parts is not None and 3 <= len(parts) <= 4
+    parts = convex_facets(wall)
+    assert parts is not None
+    assert 3 <= len(parts) <= 4
     for part in parts:
         low, high = part.min(axis=0), part.max(axis=0)
         assert not (low[0] < 2.5 < high[0] and low[2] < 1.0 < high[2])
@@ -46,8 +47,8 @@ def test_what_is_solid_is_none():
     box = trimesh.creation.box((1.0, 1.0, 0.05))
     faces = np.asarray(box.faces, dtype=np.int32)
     closed = TriangleMesh(np.asarray(box.vertices, dtype=float), faces)
-    assert convex_facets(closed, 32) is None
-    assert convex_facets(TriangleMesh(closed.vertices, faces[1:]), 32) is None  # a plate with a hole in its side
+    assert convex_facets(closed) is None
+    assert convex_facets(TriangleMesh(closed.vertices, faces[1:])) is None  # a plate with a hole in its side
     many = trimesh.creation.icosphere(2)
     ball = TriangleMesh(np.asarray(many.vertices, dtype=float), np.asarray(many.faces[:-1], dtype=np.int32))
-    assert convex_facets(ball, 32) is None
+    assert convex_facets(ball) is None

@@ -71,7 +71,11 @@ def convex_parts(
         _log.info("splitting a mesh of %d triangles into convex parts; the result is kept", len(mesh.faces))
         parts = []
         for piece, hull, is_convex in zip(pieces, hulls, convex, strict=True):
-            parts += [hull] if is_convex else [hull_of_points(points) for points in decomposition.decompose(piece, is_cancelled)]
+            parts += (
+                [hull]
+                if is_convex
+                else [hull_of_points(points) for points in decomposition.decompose(piece, is_cancelled)]
+            )
         _save(file, parts)
     return parts, True
 

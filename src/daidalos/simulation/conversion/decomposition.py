@@ -1,9 +1,10 @@
 """Approximate convex decomposition of surfaces by planar cuts.
 
-A piece is cut where the two halves' convex hulls have the least volume together, until every hull lies within a
-tolerance of the solid or the number of parts is reached. The concavity of a piece is the largest distance from its
-hull to the solid, as in CoACD (Wei et al. 2022), whose tree search takes minutes where this takes a second; the
-result is the same on every machine.
+Walls of rooms and other open surfaces of few plane faces become these faces (`facets`). Any other piece is cut where
+the two halves' convex hulls have the least volume together, until every hull lies within a tolerance of the solid or
+the number of parts is reached. The concavity of a piece is the largest distance from its hull to the solid, as in
+CoACD (Wei et al. 2022), whose tree search takes minutes where this takes a second; the result is the same on every
+machine.
 """
 
 from __future__ import annotations
@@ -72,13 +73,14 @@ def decompose(mesh: TriangleMesh, is_cancelled: Callable[[], bool] = lambda: Fal
     Returns
     -------
     list of (n, 3) arrays
-        At most `MAX_PARTS`, in an order that depends on the mesh alone.
+        Those of `convex_facets` where there are some, else at most
+        `MAX_PARTS`, in an order that depends on the mesh alone.
 
     Raises
     ------
     Cancelled
     """
-    facets = convex_facets(mesh, MAX_PARTS)
+    facets = convex_facets(mesh)
     if facets is not None:
         return facets
     extent = float(np.ptp(mesh.vertices, axis=0).max())

@@ -11,12 +11,15 @@ import numpy as np
 from daidalos.description.meshes import TriangleMesh
 
 _MAX_TRIANGLES = 300
+_MAX_FACETS = 150
 _COPLANAR = 1e-3
 """Sine of the angle, and distance as a share of the surface's extent, up to which two triangles share a plane."""
 _AREA_TOLERANCE = 1e-3
 """Share by which the convex hull of two polygons may exceed their areas."""
 _THINNEST = 0.3
 """Distance [m] between opposite faces below which they are the two sides of something solid."""
+_SOLID_SHARE = 0.25
+"""Share of the surface's area that such sides have from which on the surface counts as that of something solid."""
 
 Points = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -28,22 +31,20 @@ class _Facet:
     normal: Points
 
 
-def convex_facets(mesh: TriangleMesh, max_parts: int) -> list[Points] | None:
+def convex_facets(mesh: TriangleMesh) -> list[Points] | None:
     """Return the convex polygons that an open surface consists of.
 
     Parameters
     ----------
     mesh : TriangleMesh
         Lengths in metres.
-    max_parts : int
-        Largest number of polygons.
 
     Returns
     -------
     list of (n, 3) arrays or None
         The polygons' vertices; None for a closed surface, one of too many
-        faces, and one whose faces are the sides of plates or bars, which
-        are solid.
+        faces, and one whose faces are mostly the sides of plates or bars,
+        which are solid.
     """
     if len(mesh.faces) > _MAX_TRIANGLES:
         return None
@@ -51,10 +52,11 @@ def convex_facets(mesh: TriangleMesh, max_parts: int) -> list[Points] | None:
     if len(edges) == 3 * len(mesh.faces) / 2:
         return None
     facets = _merge(mesh, edges)
-    if len(facets) > max_parts:
+    if len(facets) > _MAX_FACETS:
         return None
     polygons = [(mesh.vertices[sorted(facet.vertices)], facet.normal) for facet in facets]
-    if any(_are_sides(one, other) for one, other in itertools.combinations(polygons, 2)):
+    sides = sum(2 * _opposite_area(one, other) for one, other in itertools.combinations(polygons, 2))
+    if sides > _SOLID_SHARE * sum(facet.area for facet in facets):
         return None
     return [vertices for vertices, _ in polygons]
 
@@ -111,14 +113,16 @@ def _is_convex_union(vertices: Points, one: _Facet, other: _Facet, tolerance: fl
     return hull <= (1 + _AREA_TOLERANCE) * (one.area + other.area)
 
 
-def _are_sides(one: tuple[Points, Points], other: tuple[Points, Points]) -> bool:
-    """Return whether two polygons lie opposite each other, nearer than `_THINNEST`."""
+def _opposite_area(one: tuple[Points, Points], other: tuple[Points, Points]) -> float:
+    """Return about how much [m^2] of two polygons lies opposite each other, nearer than `_THINNEST`."""
     (vertices, normal), (opposite, direction) = one, other
+    if abs(float(normal @ direction)) < 0.9:
+        return 0.0
     distance = abs(float((opposite.mean(axis=0) - vertices.mean(axis=0)) @ normal))
     extent = max(float(np.ptp(vertices, axis=0).max()), float(np.ptp(opposite, axis=0).max()))
-    if abs(float(normal @ direction)) < 0.9 or not _COPLANAR * extent < distance < min(_THINNEST, extent):
-        return False
+    if not _COPLANAR * extent < distance < min(_THINNEST, extent):
+        return 0.0
     across = np.linalg.svd(normal[None])[2][1:]
     first, second = vertices @ across.T, opposite @ across.T
     overlap = np.minimum(first.max(axis=0), second.max(axis=0)) - np.maximum(first.min(axis=0), second.min(axis=0))
-    return bool((overlap > _COPLANAR * extent).all())
+    return float(np.prod(np.maximum(overlap, 0.0)))

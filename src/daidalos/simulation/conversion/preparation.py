@@ -69,7 +69,8 @@ def prepare_meshes(
     SimulationError
         When it was cancelled.
     """
-    shapes = list(dict.fromkeys(_shapes(models)))
+    # The largest first, so that no thread is left with it at the end.
+    shapes = sorted(dict.fromkeys(_shapes(models)), key=lambda shape: _file_size(shape[0]), reverse=True)
     if not shapes:
         return {}
     cancelled = threading.Event()
@@ -115,6 +116,14 @@ def _shapes(models: Iterable[Model]) -> Iterator[tuple[Geometry, bool]]:
             for collision in link.collisions:
                 if isinstance(collision.geometry, Mesh):
                     yield collision.geometry, is_decomposed(collision.geometry, model.static or link.static)
+
+
+def _file_size(shape: Geometry) -> int:
+    path = getattr(shape, "path", None)
+    try:
+        return 0 if path is None else os.stat(path).st_size
+    except OSError:
+        return 0
 
 
 def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> _Prepared:
