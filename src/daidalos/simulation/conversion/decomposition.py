@@ -163,7 +163,8 @@ def _same_plane(normal: Points, offset: float, plane: Points, tolerance: float) 
 def _grid_steps(wanted: Points) -> np.ndarray[Any, np.dtype[np.int64]]:
     """Return numbers of steps, few distinct ones, none less than wanted."""
     exponents = np.ceil(np.log(np.clip(wanted, 1.0, _MAX_STEPS)) / np.log(_GRID_RATIO) - 1e-9)
-    return np.ceil(_GRID_RATIO**exponents - 1e-9).astype(np.int64)
+    steps: np.ndarray[Any, np.dtype[np.int64]] = np.ceil(_GRID_RATIO**exponents - 1e-9).astype(np.int64)
+    return steps
 
 
 @functools.lru_cache(maxsize=256)
