@@ -12,7 +12,7 @@ from geographic_msgs.msg import GeoPoint, GeoPose
 from geometry_msgs.msg import Point, TransformStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Log
-from robot_localization.srv import FromLL, SetDatum, SetUTMZone, ToLL
+from robot_localization.srv import FromLL, FromLLArray, SetDatum, SetUTMZone, ToLL, ToLLArray
 from sensor_msgs.msg import Imu, NavSatFix
 from tf2_msgs.msg import TFMessage
 
@@ -115,12 +115,20 @@ def test_places_are_converted_there_and_back(stage: Set) -> None:
     unknown = bench.stage.call(ToLL, "/toLL", map_point=Point(x=1.0))
     assert math.isnan(unknown.ll_point.latitude), "no place is better than a wrong one"
     assert bench.warnings("not aligned with the earth yet")
+    none = bench.stage.call(FromLLArray, "/fromLLArray", ll_points=[GeoPoint(latitude=START[0], longitude=START[1])])
+    assert [math.isnan(point.x) for point in none.map_points] == [True]
     bench.drive()
     bench.drive()
     place = bench.stage.call(ToLL, "/toLL", map_point=Point(x=30.0, y=-4.0)).ll_point
     point = bench.stage.call(FromLL, "/fromLL", ll_point=place).map_point
     assert (point.x, point.y, point.z) == pytest.approx((30.0, -4.0, 0.0), abs=1e-6)
     assert (place.latitude, place.longitude) == pytest.approx(bench.place(29.5, -4.0, 0.0)[:2], abs=1e-7)
+    points = [Point(x=30.0, y=-4.0), Point(x=-5.0, y=2.0)]
+    places = bench.stage.call(ToLLArray, "/toLLArray", map_points=points).ll_points
+    assert places[0] == place
+    assert bench.stage.call(FromLLArray, "/fromLLArray", ll_points=places[:1]).map_points == [point]
+    back = bench.stage.call(FromLLArray, "/fromLLArray", ll_points=places).map_points
+    assert [(one.x, one.y) for one in back] == [pytest.approx((one.x, one.y), abs=1e-6) for one in points]
 
 
 def test_a_datum_is_the_origin(stage: Set) -> None:

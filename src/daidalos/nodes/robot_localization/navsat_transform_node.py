@@ -13,7 +13,7 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
-from robot_localization.srv import FromLL, SetDatum, SetUTMZone, ToLL
+from robot_localization.srv import FromLL, FromLLArray, SetDatum, SetUTMZone, ToLL, ToLLArray
 from sensor_msgs.msg import Imu, NavSatFix
 from tf2_ros import Buffer, StaticTransformBroadcaster, TransformException, TransformListener
 
@@ -120,6 +120,8 @@ class NavsatTransformNode(Node):
         self.create_service(SetDatum, "datum", self._on_set_datum)
         self.create_service(ToLL, "toLL", self._on_to_ll)
         self.create_service(FromLL, "fromLL", self._on_from_ll)
+        self.create_service(ToLLArray, "toLLArray", self._on_to_ll_array)
+        self.create_service(FromLLArray, "fromLLArray", self._on_from_ll_array)
         self.create_service(SetUTMZone, "setUTMZone", self._on_set_zone)
         self.create_timer(1.0 / p.frequency, self._cycle)
 
@@ -311,28 +313,41 @@ class NavsatTransformNode(Node):
         self._alignment = self._zone = None
 
     def _on_to_ll(self, request: Any, response: Any) -> Any:
-        point = request.map_point
-        place = (_UNKNOWN,) * 3 if self._is_unaligned() else self._aligned.to_place((point.x, point.y, point.z))
-        response.ll_point = GeoPoint(latitude=place[0], longitude=place[1], altitude=place[2])
+        self._report_unaligned()
+        response.ll_point = self._to_place(request.map_point)
         return response
 
     def _on_from_ll(self, request: Any, response: Any) -> Any:
-        place = request.ll_point
-        coordinates = (place.latitude, place.longitude, place.altitude)
-        x, y, z = (_UNKNOWN,) * 3 if self._is_unaligned() else self._aligned.to_world(*coordinates)
-        response.map_point = Point(x=x, y=y, z=0.0 if self._settings.zero_altitude else z)
+        self._report_unaligned()
+        response.map_point = self._to_point(request.ll_point)
         return response
 
-    def _is_unaligned(self) -> bool:
-        """Return whether the world frame is not aligned yet, after an error in the log."""
+    def _on_to_ll_array(self, request: Any, response: Any) -> Any:
+        self._report_unaligned()
+        response.ll_points = [self._to_place(point) for point in request.map_points]
+        return response
+
+    def _on_from_ll_array(self, request: Any, response: Any) -> Any:
+        self._report_unaligned()
+        response.map_points = [self._to_point(place) for place in request.ll_points]
+        return response
+
+    def _to_place(self, point: Point) -> GeoPoint:
+        """Return the place of a point in the world frame; one that is not known while that is not aligned."""
+        alignment = self._alignment
+        place = (_UNKNOWN,) * 3 if alignment is None else alignment.to_place((point.x, point.y, point.z))
+        return GeoPoint(latitude=place[0], longitude=place[1], altitude=place[2])
+
+    def _to_point(self, place: GeoPoint) -> Point:
+        """Return the point in the world frame of a place; one that is not known while that is not aligned."""
+        alignment, coordinates = self._alignment, (place.latitude, place.longitude, place.altitude)
+        x, y, z = (_UNKNOWN,) * 3 if alignment is None else alignment.to_world(*coordinates)
+        return Point(x=x, y=y, z=0.0 if self._settings.zero_altitude else z)
+
+    def _report_unaligned(self) -> None:
+        """Write to the log where the world frame is not aligned yet."""
         if self._alignment is None:
             self.get_logger().error("places cannot be converted: the world frame is not aligned with the earth yet")
-        return self._alignment is None
-
-    @property
-    def _aligned(self) -> NavsatAlignment:
-        assert self._alignment is not None
-        return self._alignment
 
 
 def _quaternion(message: Any) -> tuple[float, float, float, float]:
