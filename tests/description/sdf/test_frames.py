@@ -81,6 +81,18 @@ def test_mistakes(body, words):
         model(body)
 
 
+@pytest.mark.parametrize("tag", ["visual", "collision", "sensor", "light"])
+def test_what_is_on_a_link_stays_there_when_its_frame_is_not_known(tag):
+    box = "<geometry><box><size>1 1 1</size></box></geometry>" if tag in ("visual", "collision") else ""
+    made = model(
+        f"<link name='l'><{tag} name='c' type='point'><pose relative_to='m'>1 2 3 0 0 0</pose>{box}</{tag}></link>"
+    )
+    (part,) = getattr(made.links["l"], f"{tag}s")
+    assert part.pose.position == (1, 2, 3)
+    (warning,) = made.warnings
+    assert "there is no frame 'm'; its pose is taken relative to the link" in warning
+
+
 @pytest.mark.parametrize(
     ("version", "axis", "expected"),
     [

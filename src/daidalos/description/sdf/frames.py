@@ -55,6 +55,10 @@ class FrameGraph:
     def __contains__(self, name: str) -> bool:
         return name == self.root or name in self._placed
 
+    def can_place(self, name: str) -> bool:
+        """Return whether a frame is known, or lies in a model that was not found."""
+        return name in self or bool(self._stand_in(name))
+
     def add(self, name: str, pose: RelativePose, default: str, element: Element) -> None:
         """Add a frame; `default` is its parent if the file names none.
 

@@ -195,7 +195,14 @@ class _ModelReader:
         name = element.name()
 
         def place(child: Element) -> Pose:
-            return self._graph.place(read_pose(child), name, child)
+            pose = read_pose(child)
+            if pose.relative_to and not self._graph.can_place(pose.relative_to):
+                # sdformat resolves these poses only when they are asked for; Gazebo then takes them as they stand.
+                self._context.warn(
+                    child, f"there is no frame {pose.relative_to!r}; its pose is taken relative to the link"
+                )
+                return pose.pose
+            return self._graph.place(pose, name, child)
 
         return read_link(element, self._context, self._graph.pose(name, element), place)
 
