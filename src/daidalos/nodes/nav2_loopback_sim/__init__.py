@@ -1,0 +1,1 @@
+"""Simulator without physics: the robot does what it is told, and sees the map."""
