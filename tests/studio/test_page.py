@@ -11,12 +11,14 @@ import pytest
 from browser.cdp import Chromium, require_chromium, require_page
 from daidalos.studio.arrangement import Arrangement, Curve, Display, Plot, Split, View
 from daidalos.studio.assets import AssetResolver
+from daidalos.studio.plotjuggler_layout import parse_plotjuggler
 from daidalos.studio.rviz_config import parse_rviz
 from daidalos.studio.server import StudioServer
 
 from . import display_zoo
 from .demo_robot import SHARE, DemoRobot
 from .memory_source import MemorySource, decode, encode, make, schema
+from .test_plotjuggler_layout import LAYOUT
 from .test_rviz_config import ROS_2
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -497,6 +499,30 @@ def test_what_is_shown_is_saved_and_opened_as_a_configuration_of_rviz(browser, s
     changed = {a.name for a, b in zip(before.displays, after.displays, strict=True) if a != b}
     assert changed == {"LaserScan"}
     assert (after.view, after.fixed_frame) == (before.view, before.fixed_frame)
+
+
+def test_plots_are_saved_as_a_layout_of_plotjuggler(browser, source, robot, tmp_path):
+    file = tmp_path / "mine.xml"
+    file.write_text(LAYOUT)
+    with serve(source) as server:
+        show(browser, server.url)
+        browser.choose_file("[data-test=layout-file]", file)
+        browser.wait_for(
+            "location.search.includes('layout=mine.xml') && document.querySelectorAll('.panel .plot').length === 3", 60
+        )
+        browser.evaluate("URL.createObjectURL = (blob) => { window.saved = blob.text(); return 'data:,'; }")
+        browser.click_on("[data-test=file]")
+        browser.evaluate(
+            "[...document.querySelectorAll('.menu-item')]"
+            ".find((e) => e.textContent.includes('PlotJuggler .xml')).click()"
+        )
+        saved = browser.wait_for("window.saved")
+    before, after = (parse_plotjuggler(text.encode(), "a") for text in (LAYOUT, saved))
+    assert after.left_out == before.left_out, "transforms and custom series are kept"
+    ((title, split),) = after.tabs
+    ((name, whole),) = before.tabs
+    assert (title, split.parts[0], split.parts[1].parts) == (name, whole.parts[0], whole.parts[1].parts)
+    assert split.shares == pytest.approx(whole.shares, abs=0.02)
 
 
 def test_a_layout_is_saved_and_opened(browser, source, robot, tmp_path):

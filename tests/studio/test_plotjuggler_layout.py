@@ -47,9 +47,10 @@ def test_plots_and_their_places(tmp_path):
     assert name == "drive"
     over_time = Plot(
         (Curve("/odom/twist/twist/linear/x", "#1f77b4"), Curve("/joint_states/position/1", "#d62728")),
+        "0",
     )
-    way = Plot((Curve("/odom/pose/pose/position/y", "#2ca02c", "/odom/pose/pose/position/x"),))
-    assert content == Split(False, (0.25, 0.75), (over_time, Split(True, (0.5, 0.5), (way, Plot(())))))
+    way = Plot((Curve("/odom/pose/pose/position/y", "#2ca02c", "/odom/pose/pose/position/x"),), "1")
+    assert content == Split(False, (0.25, 0.75), (over_time, Split(True, (0.5, 0.5), (way, Plot((), "2")))))
     assert arrangement.left_out == (
         "the transform Derivative of /joint_states/position[1]",
         "the custom series speed",

@@ -86,9 +86,17 @@ class Curve:
 
 @dataclass(frozen=True)
 class Plot:
-    """One plot."""
+    """One plot.
+
+    Parameters
+    ----------
+    curves : tuple of Curve
+    origin : str
+        Its number in the file that it was read from; empty for one that was added.
+    """
 
     curves: tuple[Curve, ...]
+    origin: str = ""
 
 
 @dataclass(frozen=True)
@@ -122,7 +130,7 @@ class Arrangement:
     left_out : tuple of str
         What the file asks for and the studio does not have, for a message to the user.
     source : str
-        The text of the display configuration that it was read from, so that saving keeps what is not known here.
+        The text of the file that it was read from, so that saving keeps what is not known here.
     """
 
     fixed_frame: str = ""

@@ -38,53 +38,85 @@ def parse_plotjuggler(text: bytes, path: str) -> Arrangement:
         root = parse_markup(text, path)
     except DescriptionError as error:
         raise ArrangementError(path, error.line, error.message) from None
-    sheets = [tab for widget in root.walk() if widget.tag == "tabbed_widget" for tab in widget.all("Tab")]
+    sheets = sheets_of(root)
     if root.tag != "root" or not sheets:
         raise ArrangementError(path, None, "not a layout of PlotJuggler: <tabbed_widget> with a <Tab> is missing")
-    left_out: list[str] = []
+    reader = _PlotReader(root)
     tabs = []
     for number, sheet in enumerate(sheets, 1):
-        container = sheet.first("Container")
-        content = None if container is None else _content(container.children, left_out)
+        content = reader.content_of(sheet)
         if content is not None:
             tabs.append((sheet.attribute("tab_name", "") or f"tab{number}", content))
-    left_out += [f"the custom series {snippet.attribute('name', '')}" for snippet in _snippets(root)]
+    left_out = [*reader.left_out, *(f"the custom series {each.attribute('name', '')}" for each in _snippets(root))]
     buffer = root.first("streaming_buffer_size")
-    return Arrangement(tabs=tuple(tabs), span=_seconds(buffer), left_out=tuple(left_out))
+    source = text.decode(errors="replace")
+    return Arrangement(tabs=tuple(tabs), span=_seconds(buffer), left_out=tuple(left_out), source=source)
 
 
-def _content(elements: Sequence[Element], left_out: list[str]) -> Plot | Split | None:
-    """Return what the first splitter or dock area holds; None where there is none."""
-    for element in elements:
-        if element.tag == "DockSplitter":
-            return _split(element, left_out)
-        if element.tag == "DockArea":
-            plots = [_plot(plot, left_out) for plot in element.all("plot")]
-            return plots[0] if plots else Plot(())
-    return None
+def sheets_of(root: Element) -> list[Element]:
+    """Return the elements of the tabs of all windows."""
+    return [tab for widget in root.walk() if widget.tag == "tabbed_widget" for tab in widget.all("Tab")]
 
 
-def _split(element: Element, left_out: list[str]) -> Split | Plot | None:
-    parts = [part for child in element if (part := _content([child], left_out)) is not None]
-    if len(parts) < 2:
-        return parts[0] if parts else None
-    sizes = [_share(text) for text in element.attribute("sizes", "").split(";")]
-    shares = sizes if len(sizes) == len(parts) and all(size > 0 for size in sizes) else [1.0] * len(parts)
-    total = sum(shares)
-    across = element.attribute("orientation", "|") == "|"
-    return Split(across, tuple(share / total for share in shares), tuple(parts))
+def plots_of(root: Element) -> dict[str, Element]:
+    """Return the elements of the plots by their origins."""
+    return {str(number): plot for number, plot in enumerate(each for each in root.walk() if each.tag == "plot")}
 
 
-def _plot(element: Element, left_out: list[str]) -> Plot:
-    is_xy = element.attribute("mode", "TimeSeries") == "XYPlot"
-    curves = []
-    for curve in element.all("curve"):
-        name = curve.attribute("name", "")
-        left_out += [f"the transform {each.attribute('name', '')} of {name}" for each in curve.all("transform")]
-        over, path = (curve.attribute("curve_x", ""), curve.attribute("curve_y", "")) if is_xy else ("", name)
-        if path and (over or not is_xy):
-            curves.append(Curve(_path(path), curve.attribute("color", ""), _path(over)))
-    return Plot(tuple(curves))
+def curve_of(element: Element, *, is_xy: bool) -> Curve | None:
+    """Return what the element of a curve asks for; None where it has no paths."""
+    name = element.attribute("name", "")
+    over, path = (element.attribute("curve_x", ""), element.attribute("curve_y", "")) if is_xy else ("", name)
+    return Curve(_path(path), element.attribute("color", ""), _path(over)) if path and (over or not is_xy) else None
+
+
+def is_xy_plot(plot: Element) -> bool:
+    """Return whether a plot draws fields over fields."""
+    return plot.attribute("mode", "TimeSeries") == "XYPlot"
+
+
+class _PlotReader:
+    """Reader of the plots of tabs; keeps what the studio does not have."""
+
+    def __init__(self, root: Element) -> None:
+        self.left_out: list[str] = []
+        self._origins = {id(plot): origin for origin, plot in plots_of(root).items()}
+
+    def content_of(self, sheet: Element) -> Plot | Split | None:
+        """Return what a tab has; None where it is empty."""
+        container = sheet.first("Container")
+        return None if container is None else self._content(container.children)
+
+    def _content(self, elements: Sequence[Element]) -> Plot | Split | None:
+        """Return what the first splitter or dock area holds; None where there is none."""
+        for element in elements:
+            if element.tag == "DockSplitter":
+                return self._split(element)
+            if element.tag == "DockArea":
+                plots = [self._plot(plot) for plot in element.all("plot")]
+                return plots[0] if plots else Plot(())
+        return None
+
+    def _split(self, element: Element) -> Split | Plot | None:
+        parts = [part for child in element if (part := self._content([child])) is not None]
+        if len(parts) < 2:
+            return parts[0] if parts else None
+        sizes = [_share(text) for text in element.attribute("sizes", "").split(";")]
+        shares = sizes if len(sizes) == len(parts) and all(size > 0 for size in sizes) else [1.0] * len(parts)
+        total = sum(shares)
+        across = element.attribute("orientation", "|") == "|"
+        return Split(across, tuple(share / total for share in shares), tuple(parts))
+
+    def _plot(self, element: Element) -> Plot:
+        is_xy = is_xy_plot(element)
+        curves = []
+        for each in element.all("curve"):
+            name = each.attribute("name", "")
+            self.left_out += [f"the transform {kind.attribute('name', '')} of {name}" for kind in each.all("transform")]
+            curve = curve_of(each, is_xy=is_xy)
+            if curve is not None:
+                curves.append(curve)
+        return Plot(tuple(curves), self._origins[id(element)])
 
 
 def _path(name: str) -> str:

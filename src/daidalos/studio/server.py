@@ -17,7 +17,7 @@ from daidalos.studio.client import Client
 from daidalos.studio.files import STATIC
 from daidalos.studio.guarded_server import LOOPBACK, GuardedServer
 from daidalos.studio.hub import Changes, Hub
-from daidalos.studio.layouts import read_layout, write_layout
+from daidalos.studio.layouts import read_layout, write_layout, write_plots
 from daidalos.studio.pages import (
     ARRANGEMENT_KEY,
     STATIC_KEY,
@@ -130,6 +130,7 @@ class StudioServer(GuardedServer):
         app.router.add_get("/arrangement.json", arrangement_of)
         app.router.add_post("/layouts/read", read_layout)
         app.router.add_post("/layouts/rviz", write_layout)
+        app.router.add_post("/layouts/plotjuggler", write_plots)
         app.router.add_get("/extensions.json", extensions_of)
         app.router.add_get("/extensions/{kind}/{name}/{path:.*}", extension_module)
         app.router.add_get("/{path:.*}", page)

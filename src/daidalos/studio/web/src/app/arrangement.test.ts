@@ -23,8 +23,8 @@ it("asks for displays, with what it leaves open as always", () => {
 });
 
 it("has a first plot, however it is split", () => {
-  const plot = { curves: [{ path: "/a", color: "", over: "" }] };
-  const split = { across: true, shares: [1, 1], parts: [plot, { curves: [] }] };
+  const plot = { curves: [{ path: "/a", color: "", over: "" }], origin: "0" };
+  const split = { across: true, shares: [1, 1], parts: [plot, { curves: [], origin: "" }] };
   expect(firstPlot({ across: false, shares: [1], parts: [split] })).toBe(plot);
-  expect(firstPlot({ across: false, shares: [], parts: [] })).toEqual({ curves: [] });
+  expect(firstPlot({ across: false, shares: [], parts: [] })).toEqual({ curves: [], origin: "" });
 });

@@ -32,7 +32,7 @@ export function isSplit(content: Plot | Split): content is Split {
 /** The first plot of a split, which stands for all of it while the others are not placed. */
 export function firstPlot(content: Plot | Split): Plot {
   const [first] = isSplit(content) ? content.parts : [];
-  return isSplit(content) ? (first ? firstPlot(first) : { curves: [] }) : content;
+  return isSplit(content) ? (first ? firstPlot(first) : { curves: [], origin: "" }) : content;
 }
 
 export function allPlots(content: Plot | Split): readonly Plot[] {

@@ -2,7 +2,10 @@
 import type { Arrangement, Display } from "../generated/arrangement";
 import { DISPLAYS } from "../displays/registry";
 import type { DisplayConfig } from "../displays/settings";
+import { firstCurves } from "../panels/plot/first_curves";
 import type { ViewState } from "../scene/view";
+import type { Layout } from "./layout";
+import { plotSpan, plotTabs } from "./plots";
 import { isRecord } from "./stored";
 import type { Studio } from "./studio";
 
@@ -46,14 +49,37 @@ export function openedFile(name: string): Arrangement | undefined {
 export async function saveRviz(studio: Studio, view: ViewState | undefined, followed: string): Promise<void> {
   const displays = studio.displays.configs.map((config) => savedDisplay(config, studio.arrangement));
   const { arrangement, fixedFrame } = studio;
-  const state = { fixedFrame: fixedFrame.current.value, displays, view, followed, source: arrangement?.source ?? "" };
-  const answer = await fetch("layouts/rviz", { method: "POST", body: JSON.stringify(state) });
+  const source = arrangement?.displays ? arrangement.source : "";
+  await saveAs("daidalos.rviz", "layouts/rviz", {
+    fixedFrame: fixedFrame.current.value,
+    displays,
+    view,
+    followed,
+    source,
+  });
+}
+
+/** Save the plots as a layout of PlotJuggler; rejected with the reason. */
+export async function savePlots(studio: Studio, { state }: Layout): Promise<void> {
+  const tabs = plotTabs(state, firstCurves(studio));
+  if (!tabs.length) {
+    throw new Error("there is no plot to save");
+  }
+  const { arrangement } = studio;
+  const source = arrangement?.tabs.length ? arrangement.source : "";
+  await saveAs("daidalos.xml", "layouts/plotjuggler", { tabs, span: plotSpan(state), source });
+}
+
+/** Save what the server makes of a state, under the name of the file that was opened where it is of this kind. */
+async function saveAs(name: string, address: string, state: object): Promise<void> {
+  const answer = await fetch(address, { method: "POST", body: JSON.stringify(state) });
   const text = await answer.text();
   if (!answer.ok) {
     throw new Error(text);
   }
   const named = new URLSearchParams(location.search).get("layout");
-  download(named?.endsWith(".rviz") ? named : "daidalos.rviz", text);
+  const suffix = name.slice(name.lastIndexOf("."));
+  download(named?.endsWith(suffix) ? named : name, text);
 }
 
 /** A display without settings that neither its file nor the user gave: the page's defaults are not RViz's. */

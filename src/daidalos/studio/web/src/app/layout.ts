@@ -281,9 +281,9 @@ class PlotPlaces {
     private readonly span: number,
   ) {}
 
-  add(title: string, { curves }: Plot, position: Position, inactive = false): IDockviewPanel {
+  add(title: string, { curves, origin }: Plot, position: Position, inactive = false): IDockviewPanel {
     const id = `plot-${++this.number}`;
-    const params = { curves, ...(this.span ? { span: this.span } : {}) };
+    const params = { curves, origin, ...(this.span ? { span: this.span } : {}) };
     return this.dock.addPanel({ id, component: "plot", title, params, position, inactive });
   }
 

@@ -5,7 +5,7 @@ import { formatTime } from "../ros/time";
 import { followed } from "../scene/world";
 import { Icon, iconNamed } from "../ui/icons";
 import { Menu, MenuItem, MenuSeparator } from "../ui/menu";
-import { ACCEPTED, openFile, saveLayout, saveRviz } from "./files";
+import { ACCEPTED, openFile, saveLayout, savePlots, saveRviz } from "./files";
 import { helpIsOpen } from "./help_state";
 import type { Layout } from "./layout";
 import type { Studio } from "./studio";
@@ -65,6 +65,9 @@ function FileMenu({ studio, layout }: { studio: Studio; layout: () => Layout }) 
         <MenuSeparator />
         <MenuItem icon="save" note="displays and view" onChoose={save}>
           Save as .rviz
+        </MenuItem>
+        <MenuItem icon="save" note="plots" onChoose={() => attempt(savePlots(studio, layout()))}>
+          Save as PlotJuggler .xml
         </MenuItem>
         <MenuItem icon="save" note="panels and displays" onChoose={() => saveLayout(layout().state)}>
           Save layout

@@ -10,8 +10,9 @@ import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { type Box, Chart, type Line } from "./plot/chart";
-import { add, type Curve, curveOf, curvesIn, isXY, painted, turned } from "./plot/curves";
+import { add, type Curve, curvesIn, isXY, painted, turned } from "./plot/curves";
 import { PLOT_DRAG } from "./plot/drag";
+import { firstCurves } from "./plot/first_curves";
 import { History } from "./plot/history";
 import { extent, formatReading, inProportion, roomAround } from "./plot/ranges";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
@@ -20,8 +21,6 @@ import "../styles/plot.css";
 const KEEP = 512;
 const WINDOWS = [5, 10, 30, 60, 300] as const;
 const KEPT_S = 600;
-/** What everyone's robot has: a plot that moves is a better first sight than an empty one. */
-const FIRST_PATHS = ["/odom/twist/twist/linear/x", "/odom/twist/twist/angular/z"];
 const DRAW_EVERY_S = beginsFine ? 1 / 30 : 1 / 10;
 const MAX_POINTS = 4000;
 
@@ -30,7 +29,7 @@ type Histories = ReadonlyMap<string, History>;
 function PlotPanel({ studio, visible, params, remember }: PanelProps) {
   const kept = curvesIn(params);
   const chosen = useSignal<readonly Curve[] | undefined>(kept);
-  const first = FIRST_PATHS.filter((path) => splitPath(path, topicNames(studio))).map((path) => curveOf(path));
+  const first = firstCurves(studio);
   // What everyone has is shown until the user chooses: it is not kept, and not missed where it is not there.
   const curves = painted(chosen.value ?? first);
   const signature = JSON.stringify(curves);
