@@ -86,9 +86,10 @@ def _content(given: Any) -> Plot | Split:
     if "parts" not in given:
         return from_json(Plot, given)
     parts, shares = given["parts"], given.get("shares")
-    is_whole = isinstance(parts, list) and parts and isinstance(shares, list) and len(shares) == len(parts)
-    if not is_whole or not all(isinstance(each, int | float) and each > 0 for each in shares):
+    if not isinstance(parts, list) or not isinstance(shares, list) or not 0 < len(parts) == len(shares):
         raise RecordError("expected a split to have parts and the share of each")
+    if not all(isinstance(each, int | float) and each > 0 for each in shares):
+        raise RecordError("expected the shares of a split to be positive numbers")
     return Split(given.get("across") is True, tuple(shares), tuple(map(_content, parts)))
 
 
