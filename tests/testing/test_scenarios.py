@@ -1,6 +1,7 @@
 """Scenarios as users write them: this module's tests run in lock-step by the plugin."""
 
 import os
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -47,6 +48,26 @@ class Relay(Node):
         super().__init__("relay")
         self.publisher = self.create_publisher(String, "heard", 10)
         self.create_subscription(String, "count", self.publisher.publish, 10)
+
+
+LAUNCH = """<launch><node pkg="demo_nodes_py" exec="talker" namespace="{0}"/></launch>"""
+
+
+@pytest.mark.scenario(timeout=20)
+def test_launch_files_run_beside_one_another(launch: Any, topic: Any, tmp_path: Path) -> None:
+    for side in ("left", "right"):
+        path = tmp_path / f"{side}.launch.xml"
+        path.write_text(LAUNCH.format(side))
+        launch(path)
+    for side in ("left", "right"):
+        assert topic(f"/{side}/chatter").wait(4).data.startswith("Hello")
+
+
+@pytest.mark.scenario(timeout=20)
+def test_a_launch_that_fails_fails_the_test(launch: Any, clock: Scenario) -> None:
+    launch("demo_nodes_py", "nothing.launch.py")
+    with pytest.raises(ScenarioFailure, match=r"(?s)launch of 'nothing.launch.py' ended with exit status 2.*not found"):
+        clock.sleep(1.0)
 
 
 @pytest.mark.scenario(timeout=60, seed=3)

@@ -156,6 +156,7 @@ class RunningNode:
         return found() or ""
 
     def _end(self, number: int) -> None:
+        self._scenario.has_ended_programs = True
         ended = threading.Event()
         self.program.on_exit.append(lambda status: ended.set())
         self.program.send_signal(number)
@@ -266,7 +267,7 @@ class Nodes:
         return made[0]
 
     def launch(self, *words: str | Path, **arguments: object) -> RunningNode:
-        """Launch a file, as ``ros2 launch`` does.
+        """Launch a file, as ``ros2 launch`` does; the test fails when that fails before the test has ended a program.
 
         Parameters
         ----------
@@ -277,7 +278,17 @@ class Nodes:
         """
         pairs = [f"{name}:={_launch_text(value)}" for name, value in arguments.items()]
         command = ["ros2", "launch", *map(str, words), *pairs]
-        return self._start(Path(str(words[-1])).name, command)
+        name = Path(str(words[-1])).name
+        node = self._start(name, command)
+
+        def on_exit(status: int) -> None:
+            scenario = self._scenario
+            if status and not scenario.has_ended and not scenario.has_ended_programs:
+                last = "".join(f"\n  {line}" for line in node.lines[-3:])
+                scenario.fail(f"the launch of '{name}' ended with exit status {status}{last}")
+
+        node.program.on_exit.append(on_exit)
+        return node
 
     def __getitem__(self, name: str) -> RunningNode:
         """Return a program by the name of its node, its executable or its launch file, started by whomever.

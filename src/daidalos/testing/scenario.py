@@ -54,6 +54,8 @@ class Scenario:
     ----------
     signals : list of Signal
         Everything that the test observes, in the order of creation.
+    has_ended_programs : bool
+        Whether the test has killed or interrupted a program.
     """
 
     def __init__(
@@ -67,11 +69,17 @@ class Scenario:
         self.metrics: dict[str, float] = {}
         self.signals: list[Signal] = []
         self.on_end: list[Callable[[], None]] = []
+        self.has_ended_programs = False
         self._changed = threading.Condition()
         self._failures: list[ScenarioFailure] = []
         self._recorder: Program | None = None
         self._ended = False
         program.handlers[INTERRUPTION] = self._interrupt
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the test is over."""
+        return self._ended
 
     # Time.
 

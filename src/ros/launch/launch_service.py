@@ -315,9 +315,13 @@ class LaunchService:
 
 @contextlib.contextmanager
 def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
-    """Return the event loop of the main thread, which all services run in one after another, or one for once."""
+    """Return the event loop of the main thread, which all services run in one after another, or one for once.
+
+    In lock-step, every program of the process has a main thread: the loop may be another one's.
+    """
     global _main_loop
-    if threading.current_thread() is not threading.main_thread():
+    is_taken = _main_loop is not None and _main_loop.is_running()
+    if is_taken or threading.current_thread() is not threading.main_thread():
         loop = asyncio.new_event_loop()
         try:
             yield loop
