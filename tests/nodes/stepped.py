@@ -115,6 +115,16 @@ class Stage:
         self._nodes.append(node)
         return node
 
+    def suspend(self, node: Any) -> None:
+        """Spin a node no more; its services are there, but do not answer."""
+        self._executor.remove_node(node)
+
+    def remove(self, node: Any) -> None:
+        """Destroy a node."""
+        self.suspend(node)
+        self._nodes.remove(node)
+        node.destroy_node()
+
     def add_robot(self) -> Robot:
         """Return a robot that the test plays."""
         self.robot = Robot(self.node)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from geometry_msgs.msg import Twist
 from nav2_msgs.srv import ManageLifecycleNodes
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from std_srvs.srv import Trigger
@@ -187,3 +188,74 @@ def test_no_nodes_are_up_at_once(stage: Callable[[dict[str, Any]], Stage]) -> No
     bench = Bench(stage({"/lifecycle_manager": {"node_names": []}}), [])
     assert bench.command(Request.STARTUP)
     assert bench.is_active
+
+
+class Driven:
+    """What a robot is told on cmd_vel, and the node that drives it."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.commands = stage.collect(Twist, "cmd_vel")
+        stage.node.create_publisher(Twist, "cmd_vel", 10)
+
+
+def test_when_a_node_ends_the_robot_stops_and_all_come_up_when_it_is_back(
+    stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
+) -> None:
+    bench = Bench(stage(parameters(autostart=True)))
+    robot = Driven(bench.stage)
+    bench.stage.step_until(lambda: bench.states == {"active"})
+    del bench.log[:]
+    bench.stage.remove(bench.nodes.pop("second"))
+    bench.stage.step_until(lambda: bench.states == {"inactive"})
+    assert bench.log == ["deactivate third", "deactivate first"]
+    assert robot.commands
+    assert all(command == Twist() for command in robot.commands)
+    assert not bench.is_active
+    assert "'second' is down: it has ended" in capfd.readouterr().err
+    del bench.log[:]
+    bench.nodes["second"] = bench.stage.add(Managed("second", bench.log))
+    bench.stage.step_until(lambda: bench.states == {"active"})
+    assert bench.log == ["configure second", "activate first", "activate second", "activate third"]
+    assert bench.is_active
+
+
+def test_a_node_that_does_not_answer_is_down(
+    stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
+) -> None:
+    bench = Bench(stage(parameters(autostart=True, bond_timeout=0.4, attempt_respawn_reconnection=False)))
+    bench.stage.step_until(lambda: bench.states == {"active"})
+    bench.stage.suspend(bench.nodes["third"])
+    errors = ""
+
+    def is_noted() -> bool:
+        nonlocal errors
+        errors += capfd.readouterr().err
+        return "'third' is down: it has not answered for 0.4 s" in errors
+
+    bench.stage.step_until(is_noted)
+    bench.stage.step_until(lambda: bench.nodes["first"].current_state.label == "inactive")
+
+
+def test_a_node_that_stays_away_is_named(
+    stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
+) -> None:
+    bench = Bench(stage(parameters(autostart=True, bond_respawn_max_duration=0.3)))
+    bench.stage.step_until(lambda: bench.states == {"active"})
+    bench.stage.remove(bench.nodes.pop("first"))
+    errors = ""
+
+    def is_noted() -> bool:
+        nonlocal errors
+        errors += capfd.readouterr().err
+        return "not back within 0.3 s: first" in errors
+
+    bench.stage.step_until(is_noted)
+    assert bench.states == {"inactive"}
+
+
+def test_nodes_that_were_paused_are_not_watched(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
+    bench.command(Request.STARTUP)
+    bench.command(Request.PAUSE)
+    bench.stage.remove(bench.nodes.pop("first"))
+    bench.stage.step_for(1.0)
+    assert "is down" not in capfd.readouterr().err

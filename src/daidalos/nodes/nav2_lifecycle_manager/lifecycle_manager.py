@@ -1,4 +1,4 @@
-"""`lifecycle_manager`: starts managed nodes in order, and stops them in reverse."""
+"""`lifecycle_manager`: starts managed nodes in order, stops them in reverse, and acts when one of them goes down."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from enum import IntEnum
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.nav2_lifecycle_manager.server_watch import WATCH_PERIOD_S, ServerWatch, stop_robot
 from daidalos.nodes.parameters import declare
 
 _INACTIVE, _ACTIVE = 2, 3
@@ -30,13 +32,24 @@ class LifecycleManagerParameters(Parameters):
 
     node_names: tuple[str, ...] = parameter(("",), "Nodes that are managed, in the order of their start.")
     autostart: bool = parameter(False, "Whether the nodes are started at once.")
+    bond_timeout: float = parameter(
+        4.0, "Time without an answer after which a node is down; 0 for no watch over the nodes.", unit="s", minimum=0.0
+    )
+    attempt_respawn_reconnection: bool = parameter(
+        True, "Whether the nodes are brought up again when the one that was down is back."
+    )
+    bond_respawn_max_duration: float = parameter(
+        10.0, "How long a node that is down is waited for.", unit="s", minimum=0.0
+    )
 
 
 class LifecycleManager(Node):
     """Manages the nodes in its parameter ``node_names``; with ``autostart`` it begins by itself.
 
     A node that is not there yet is waited for, however long it takes: no order of starting and no slow
-    machine makes the bring-up fail.
+    machine makes the bring-up fail. When an active node ends, or does not answer for ``bond_timeout``, the robot is
+    stopped by a velocity of zero on ``cmd_vel``, the others are deactivated, and all are brought up again when it is
+    back.
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -44,7 +57,7 @@ class LifecycleManager(Node):
         from nav2_msgs.srv import ManageLifecycleNodes
         from std_srvs.srv import Trigger
 
-        parameters = declare(self, LifecycleManagerParameters)
+        self._settings = parameters = declare(self, LifecycleManagerParameters)
         self._names = [name for name in parameters.node_names if name]
         self._clients: dict[tuple[str, str], Any] = {}
         self._active = False
@@ -52,6 +65,14 @@ class LifecycleManager(Node):
         own = MutuallyExclusiveCallbackGroup()
         self.create_service(ManageLifecycleNodes, "~/manage_nodes", self._on_manage, callback_group=own)
         self.create_service(Trigger, "~/is_active", self._on_is_active)
+        if parameters.bond_timeout > 0.0:
+            self._watch = ServerWatch(self, parameters.bond_timeout, self._client)
+            self._watch_timer = self.create_timer(
+                WATCH_PERIOD_S,
+                self._look_after_nodes,
+                callback_group=own,
+                clock=Clock(clock_type=ClockType.STEADY_TIME),
+            )
         if parameters.autostart:
             self._start_timer = self.create_timer(0.0, self._autostart, callback_group=own)
 
@@ -72,6 +93,28 @@ class LifecycleManager(Node):
         self.get_logger().info("Managed nodes are active")
         return True
 
+    async def _look_after_nodes(self) -> None:
+        """Stop the robot and the other nodes when a node is down, and bring them up when it is back."""
+        name, problem = self._watch.problem(self._names) if self._active else ("", "")
+        if not name:
+            return
+        self._active = False
+        self.get_logger().fatal(f"'{name}' is down: {problem}; stopping the robot and the other nodes")
+        stop_robot(self)
+        await self._lower(_Transition.DEACTIVATE, _ACTIVE, without=name)
+        stop_robot(self)
+        p = self._settings
+        if not p.attempt_respawn_reconnection:
+            return
+        if await self._watch.all_return(self._names, p.bond_respawn_max_duration):
+            self.get_logger().info("all nodes are there again")
+            await self._startup()
+        else:
+            missing = ", ".join(self._watch.missing(self._names))
+            self.get_logger().error(
+                f"not back within {p.bond_respawn_max_duration:g} s: {missing}; start it and call ~/manage_nodes"
+            )
+
     async def _pause(self) -> bool:
         self._active = False
         return await self._lower(_Transition.DEACTIVATE, _ACTIVE)
@@ -91,9 +134,13 @@ class LifecycleManager(Node):
                 return False
         return True
 
-    async def _lower(self, transition: _Transition, source: int) -> bool:
-        """Trigger a transition of the nodes in a state in reverse order; stop at a failure."""
+    async def _lower(self, transition: _Transition, source: int, without: str = "") -> bool:
+        """Trigger a transition of the nodes in a state in reverse order, one perhaps left out; stop at a failure."""
+        from lifecycle_msgs.srv import GetState
+
         for name in reversed(self._names):
+            if name == without or not self._client(GetState, name, "get_state").service_is_ready():
+                continue  # it is down
             if await self._state_of(name) == source and not await self._change(name, transition):
                 self.get_logger().error(f"'{name}' did not {transition.name.lower()}")
                 return False
@@ -117,12 +164,15 @@ class LifecycleManager(Node):
         response = await client.call_async(request)
         return bool(response.success)
 
-    async def _ready_client(self, kind: Any, node: str, service: str) -> Any:
+    def _client(self, kind: Any, node: str, service: str) -> Any:
         key = (node, service)
         if key not in self._clients:
             name = f"{node}/{service}"
             self._clients[key] = self.create_client(kind, name, callback_group=self._group)
-        client = self._clients[key]
+        return self._clients[key]
+
+    async def _ready_client(self, kind: Any, node: str, service: str) -> Any:
+        client = self._client(kind, node, service)
         if not client.service_is_ready():
             await self._wait_for(client, node)
         return client
