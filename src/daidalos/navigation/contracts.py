@@ -421,6 +421,10 @@ class Layer(NavigationExtension):
         """Return what the layer lacks at a time [s] to know the present, in words; empty where it lacks nothing."""
         return ""
 
+    def age_of_input(self, now: float) -> float:
+        """Return how old the layer's oldest input is at a time [s], as a share of what is allowed; 0 without inputs."""
+        return 0.0
+
     @property
     def extent(self) -> Costmap | None:
         """Costmap whose size and origin the whole costmap takes over; `None` for layers without a size."""

@@ -248,9 +248,15 @@ class ControllerServer(ManagedNode):
                 plan_frame=plan_frame,
                 circumscribed_cost=layered.circumscribed_cost(self._costmap.footprint),
             )
-        self._publish_velocity(step.velocity)
+        self._publish_velocity(step.velocity * self._share_of_speed())
         self._tell(goal_handle, step)
         return not step.done
+
+    def _share_of_speed(self) -> float:
+        """Return the share of the speed for the age of the data: less and less from half of the allowed age on."""
+        assert self._pursuit is not None
+        age = self._costmap.age_of_data(self._costmap.base_frame, self._pursuit.frame)
+        return float(np.clip(2.0 * (1.0 - age), 0.0, 1.0))
 
     def _tell(self, goal_handle: Any, step: Any) -> None:
         from nav2_msgs.action import FollowPath as FollowPathAction

@@ -280,21 +280,42 @@ class CostmapNode(ManagedNode):
         TransformFailed
             It is not known, or older than ``transform_tolerance``.
         """
-        if frame == self.global_frame:
+        found, age = self._latest_transform(frame)
+        if found is None:
             return np.zeros(3)
+        if age > self._settings.transform_tolerance:
+            raise TransformFailed(
+                f"the transform from {frame} to {self.global_frame} is {age:.3g} s old, "
+                f"longer than transform_tolerance {self._settings.transform_tolerance:g} s"
+            )
+        return pose2_of_transform(found.transform)
+
+    def _latest_transform(self, frame: str) -> tuple[Any, float]:
+        """Return the latest transform of a frame, None for the costmap's own, and its age [s]: 0 for static ones."""
+        if frame == self.global_frame:
+            return None, 0.0
         try:
             found = self.buffer.lookup_transform(self.global_frame, frame, Time())
         except TransformException as error:
             reason = "" if frame == self.base_frame else f": {error}"
             raise TransformFailed(f"there is no transform from {frame} to {self.global_frame}{reason}") from None
         stamp_ns = nanoseconds(found.header.stamp)
-        age = (self.get_clock().now().nanoseconds - stamp_ns) * 1e-9
-        if stamp_ns and age > self._settings.transform_tolerance:  # static transforms have no time
-            raise TransformFailed(
-                f"the transform from {frame} to {self.global_frame} is {age:.3g} s old, "
-                f"longer than transform_tolerance {self._settings.transform_tolerance:g} s"
-            )
-        return pose2_of_transform(found.transform)
+        return found, (self.get_clock().now().nanoseconds - stamp_ns) * 1e-9 if stamp_ns else 0.0
+
+    def age_of_data(self, *frames: str) -> float:
+        """Return how old the oldest input of a layer or transform of some frames is, as a share of what is allowed.
+
+        Raises
+        ------
+        TransformFailed
+            A transform is not known.
+        """
+        ages = [self._latest_transform(frame)[1] / max(self._settings.transform_tolerance, 1e-6) for frame in frames]
+        now = self.get_clock().now().nanoseconds * 1e-9
+        with self.lock:
+            layers = self.layered.layers if self.layered is not None else ()
+            ages += [layer.age_of_input(now) for layer in layers if layer.enabled]
+        return max(ages, default=0.0)
 
     def require_current(self) -> None:
         """Check that the costmap shows what is around the robot.

@@ -147,6 +147,15 @@ class ObstacleLayer(Layer):
                 )
         return ""
 
+    def age_of_input(self, now: float) -> float:
+        """Implement `Layer.age_of_input` by the sensors' `expected_update_rate`."""
+        ages = (
+            (now - self._latest.get(name, -np.inf)) / source.expected_update_rate
+            for name, source in self.parameters.sources.items()
+            if source.expected_update_rate > 0.0
+        )
+        return max(ages, default=0.0)
+
     def match_size(self, costmap: Costmap) -> None:
         """Keep the observations that are still inside of the costmap."""
         if self._seen is None or self._seen.resolution != costmap.resolution:

@@ -17,7 +17,7 @@ ARGUMENTS = [
     ("use_sim_time", "false", "whether the simulator's clock is used"),
     ("autostart", "true", "whether the nodes are activated at once"),
     ("use_composition", "True", "whether the nodes share a process"),
-    ("use_respawn", "False", "whether a process that ends is started again"),
+    ("use_respawn", "True", "whether a process that ends is started again"),
     ("log_level", "info", "log level"),
 ]
 

@@ -16,7 +16,7 @@ ARGUMENTS = [
     ("autostart", "true", "whether the nodes are activated at once"),
     ("use_composition", "False", "whether the nodes are loaded into a container"),
     ("container_name", "nav2_container", "name of that container"),
-    ("use_respawn", "False", "whether a process that ends is started again"),
+    ("use_respawn", "True", "whether a process that ends is started again"),
     ("log_level", "info", "log level"),
 ]
 

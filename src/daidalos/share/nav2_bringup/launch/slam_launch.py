@@ -13,7 +13,7 @@ ARGUMENTS = [
     ("namespace", "", "namespace of all nodes"),
     ("use_sim_time", "true", "whether the simulator's clock is used"),
     ("autostart", "true", "whether the nodes are activated at once"),
-    ("use_respawn", "False", "whether a process that ends is started again"),
+    ("use_respawn", "True", "whether a process that ends is started again"),
     ("log_level", "info", "log level"),
 ]
 
