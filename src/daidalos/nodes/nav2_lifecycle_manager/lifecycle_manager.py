@@ -7,7 +7,6 @@ from enum import IntEnum
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from daidalos.common.parameters import Parameters, parameter
@@ -71,7 +70,7 @@ class LifecycleManager(Node):
                 WATCH_PERIOD_S,
                 self._look_after_nodes,
                 callback_group=own,
-                clock=Clock(clock_type=ClockType.STEADY_TIME),
+                clock=self._watch.clock,
             )
         if parameters.autostart:
             self._start_timer = self.create_timer(0.0, self._autostart, callback_group=own)

@@ -27,13 +27,18 @@ class ServerWatch:
         Time [s] without an answer after which a node is down.
     client_of : callable
         Returns the client of a service by its type, the name of the node and that of the service.
+
+    Attributes
+    ----------
+    clock : Clock
+        Steady: a process answers in real time, whether the simulation goes on or not.
     """
 
     def __init__(self, node: Node, timeout: float, client_of: Callable[[Any, str, str], Any]) -> None:
         self._node = node
         self._timeout = timeout
         self._client_of = client_of
-        self._clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self.clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._asked: dict[str, tuple[float, Future]] = {}
 
     def problem(self, names: Sequence[str]) -> tuple[str, str]:
@@ -42,7 +47,7 @@ class ServerWatch:
         if missing:
             self._asked.clear()
             return missing[0], "it has ended"
-        now = 1e-9 * self._clock.now().nanoseconds
+        now = 1e-9 * self.clock.now().nanoseconds
         for name in names:
             since, answer = self._asked.get(name, (-self._timeout, None))
             if answer is not None and not answer.done():
@@ -59,11 +64,11 @@ class ServerWatch:
 
     async def all_return(self, names: Sequence[str], within: float) -> bool:
         """Wait until some nodes are in the graph and answer; return whether they are within a time [s]."""
-        end = self._clock.now() + Duration(seconds=within)
-        while self._clock.now() < end:
+        end = self.clock.now() + Duration(seconds=within)
+        while self.clock.now() < end:
             if not self.missing(names):
                 answers = [self._ask(name) for name in names]
-                while self._clock.now() < end and not all(answer.done() for answer in answers):
+                while self.clock.now() < end and not all(answer.done() for answer in answers):
                     await self._pause()
                 return all(answer.done() for answer in answers)
             await self._pause()
@@ -71,7 +76,7 @@ class ServerWatch:
 
     async def _pause(self) -> None:
         over = Future()
-        timer = self._node.create_timer(WATCH_PERIOD_S, lambda: over.set_result(None), clock=self._clock)
+        timer = self._node.create_timer(WATCH_PERIOD_S, lambda: over.set_result(None), clock=self.clock)
         await over
         self._node.destroy_timer(timer)
 
