@@ -37,6 +37,14 @@ _PLACES: tuple[dict[str, dict[str, str]], ...] = (
         },
     },
     {
+        "geometry_msgs/msg/PoseWithCovariance": {"pose": "pose", "covariance": "covariance"},
+        "geometry_msgs/msg/PoseWithCovarianceStamped": {
+            "header": "header",
+            "pose": "pose.pose",
+            "covariance": "pose.covariance",
+        },
+    },
+    {
         "geometry_msgs/msg/Wrench": {"force": "force", "torque": "torque"},
         "geometry_msgs/msg/WrenchStamped": {"header": "header", "force": "wrench.force", "torque": "wrench.torque"},
     },

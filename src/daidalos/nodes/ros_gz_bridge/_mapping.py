@@ -15,7 +15,7 @@ _NAMES = {
     "std_msgs": "Bool:Boolean ColorRGBA:Color Empty Float32:Float Float64:Double Header Int32 String:StringMsg UInt32",
     "geometry_msgs": "Pose PoseArray:Pose_V PoseStamped:Pose Point:Vector3d Quaternion Transform:Pose "
     "TransformStamped:Pose Twist TwistStamped:Twist TwistWithCovariance TwistWithCovarianceStamped:TwistWithCovariance "
-    "PoseWithCovariance Vector3:Vector3d Wrench WrenchStamped:Wrench",
+    "PoseWithCovariance PoseWithCovarianceStamped:PoseWithCovariance Vector3:Vector3d Wrench WrenchStamped:Wrench",
     "nav_msgs": "Odometry Odometry:OdometryWithCovariance",
     "rosgraph_msgs": "Clock",
     "sensor_msgs": "BatteryState CameraInfo FluidPressure Image Imu:IMU JointState:Model Joy LaserScan "
@@ -25,10 +25,11 @@ _NAMES = {
     "vision_msgs": "Detection2D:AnnotatedAxisAligned2DBox Detection2DArray:AnnotatedAxisAligned2DBox_V "
     "Detection3D:AnnotatedOriented3DBox Detection3DArray:AnnotatedOriented3DBox_V",
     "actuator_msgs": "Actuators",
+    "builtin_interfaces": "Time",
     "rcl_interfaces": "ParameterValue:Any",
     "ros_gz_interfaces": "Altimeter Contact Contacts Dataframe Entity EntityFactory EntityWrench Float32Array:Float_V "
-    "GuiCamera:GUICamera JointWrench Light LogicalCameraImage ParamVec:Param StringVec:StringMsg_V TrackVisual "
-    "VideoRecord WorldControl WorldStatistics",
+    "GuiCamera:GUICamera JointWrench Light LogicalCameraImage MaterialColor ParamVec:Param ParamVec:Param_V "
+    "SensorNoise StringVec:StringMsg_V TrackVisual VideoRecord WorldControl WorldStatistics",
 }
 TYPES: dict[str, set[str]] = {}
 """gz types of each ROS type, without their package."""
