@@ -22,6 +22,9 @@ MAX_STEPS = 100
 RELATIVE_TOLERANCE = 1e-5
 """Part of the cost that a step must save for descent to go on."""
 
+EXPLAINED = 1.5
+"""Chi2 per degree of freedom up to which a solution is taken for the best one without another start."""
+
 MIN_DAMPING, START_DAMPING, MAX_DAMPING = 1e-12, 1e-5, 1e10
 """Range of the damping that is added to the diagonal of the normal equations, and its first value."""
 
@@ -97,16 +100,15 @@ def optimize(poses: Array, edges: Sequence[Edge], *, chordal: bool = False) -> S
     edges : sequence of Edge
         Measurements; they must connect all the poses.
     chordal : bool
-        Start from the chordal relaxation as well (Carlone et al. 2015, "Initialization techniques for 3D
-        SLAM") and keep the better solution. Needed where the first guess is so bent that descent sticks in a
-        local minimum.
+        Start from the chordal relaxation (Carlone et al. 2015, "Initialization techniques for 3D SLAM"), and
+        where that leaves more than the noise of the edges explains, from the first guess as well; the better
+        solution is kept. Needed where the first guess is so bent that descent sticks in a local minimum.
     """
     rows = _columns(edges)
-    starts = [np.asarray(poses, dtype=np.float64)]
-    if chordal:
-        starts.append(_chordal_start(starts[0], rows))
-    solutions = [_descend(start, rows) for start in starts]
-    best, _ = min(solutions, key=lambda solution: solution[1])
+    guess = np.asarray(poses, dtype=np.float64)
+    best, cost = _descend(_chordal_start(guess, rows) if chordal else guess, rows)
+    if chordal and 2.0 * cost > EXPLAINED * 3.0 * (len(edges) - len(guess) + 1):
+        best, _ = min((best, cost), _descend(guess, rows), key=lambda solution: solution[1])
     outliers = rows.closure & (_squared_errors(best, rows) > OUTLIER_CHI2)
     if outliers.any():
         rows = rows.only(~outliers)

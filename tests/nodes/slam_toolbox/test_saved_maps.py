@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,6 +30,7 @@ from std_srvs.srv import Empty, SetBool
 from visualization_msgs.msg import InteractiveMarkerFeedback, MarkerArray
 
 from daidalos.common import pose2
+from daidalos.mapping.pose_graph_file import load_pose_graph
 from daidalos.nodes.conversions import grid_array, pose_message
 from daidalos.nodes.slam_toolbox.lifelong_slam_toolbox_node import LifelongSlamToolbox
 from daidalos.nodes.slam_toolbox.localization_slam_toolbox_node import LocalizationSlamToolbox
@@ -135,6 +138,34 @@ def test_a_map_is_saved_loaded_and_gone_on_from(start: Start, saved: Path, tmp_p
     assert answer.result == answer.RESULT_SUCCESS
     assert sorted(path.name for path in tmp_path.glob("map*")) == ["map.data", "map.posegraph"]
     assert bench.stage.call(ClearQueue, "/slam_toolbox/clear_queue").status
+
+
+_SAVING = """
+import sys
+from daidalos.mapping.pose_graph_file import load_pose_graph, save_pose_graph
+graph = load_pose_graph(sys.argv[1])
+while True:
+    save_pose_graph(graph, sys.argv[2])
+    print("saved", flush=True)
+"""
+"""A program that saves a map again and again."""
+
+
+def test_a_killed_node_goes_on_from_its_saved_map(start: Start, saved: Path, tmp_path: Path) -> None:
+    stem = tmp_path / "map"
+    with subprocess.Popen([sys.executable, "-c", _SAVING, str(saved), str(stem)], stdout=subprocess.PIPE) as saving:
+        assert saving.stdout is not None
+        for _ in range(3):
+            assert saving.stdout.readline() == b"saved\n"
+        saving.kill()  # while it saves once more
+    before = len(load_pose_graph(stem).clouds)
+    bench = start(SynchronousSlamToolbox, map_file_name=str(stem), map_start_pose=[0.8, -2.2, 0.5])
+    stand(bench, lambda: bool(bench.map_to_odom))
+    assert offset(bench) < 0.05
+    assert bench.node.slam.key_count == before + 1
+    answer = bench.stage.call(SerializePoseGraph, "/slam_toolbox/serialize_map", filename=str(stem))
+    assert answer.result == answer.RESULT_SUCCESS
+    assert sorted(path.name for path in tmp_path.glob("map*")) == ["map.data", "map.posegraph"]
 
 
 def test_a_map_asked_for_while_the_algorithms_are_compiled_is_loaded_afterwards(
