@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -108,3 +109,16 @@ def incompatibilities(offered: Qos, requested: Qos) -> list[Policy]:
     ) or offered.liveliness_lease_ns > requested.liveliness_lease_ns:
         found.append(Policy.LIVELINESS)
     return found
+
+
+_REASONS = {
+    Policy.RELIABILITY: "Best effort publisher and reliable subscription",
+    Policy.DURABILITY: "Volatile publisher and transient local subscription",
+    Policy.DEADLINE: "Subscription's deadline is less than publisher's",
+    Policy.LIVELINESS: "Publisher's liveliness does not meet the subscription's",
+}
+
+
+def incompatibility_text(policies: Iterable[Policy]) -> str:
+    """Return what `incompatibilities` found as text in ROS 2's form: each reason between ``ERROR:`` and a semicolon."""
+    return "".join(f"ERROR: {_REASONS[policy]};" for policy in policies)

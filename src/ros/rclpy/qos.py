@@ -15,6 +15,7 @@ from daidalos.transport.qos import (
     Qos,
     Reliability,
     incompatibilities,
+    incompatibility_text,
 )
 from rclpy.duration import Duration
 from rclpy.impl.qos_policies import DurabilityPolicy as DurabilityPolicy
@@ -336,22 +337,13 @@ def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile
     unsure = _unsure(publisher_qos, subscription_qos)
     certain = [policy for policy in found if policy not in unsure]
     if certain:
-        reasons = "".join(f"ERROR: {_REASONS[policy]};" for policy in certain)
-        return QoSCheckCompatibleResult(QoSCompatibility.ERROR, reasons)
+        return QoSCheckCompatibleResult(QoSCompatibility.ERROR, incompatibility_text(certain))
     if unsure:
         reasons = "".join(
             f"WARNING: {policy.name.capitalize()} policy is not known on both sides;" for policy in unsure
         )
         return QoSCheckCompatibleResult(QoSCompatibility.WARNING, reasons)
     return QoSCheckCompatibleResult(QoSCompatibility.OK, "")
-
-
-_REASONS = {
-    Policy.RELIABILITY: "Best effort publisher and reliable subscription",
-    Policy.DURABILITY: "Volatile publisher and transient local subscription",
-    Policy.DEADLINE: "Subscription's deadline is less than publisher's",
-    Policy.LIVELINESS: "Publisher's liveliness does not meet the subscription's",
-}
 
 
 def _unsure(publisher: QoSProfile, subscription: QoSProfile) -> list[Policy]:

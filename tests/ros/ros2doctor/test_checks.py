@@ -29,7 +29,7 @@ def test_ends_that_do_not_meet_are_counted(node: Node) -> None:  # noqa: F811
     with shared_graph(node.handle.graph):
         with pytest.warns(UserWarning, match="Publisher without subscriber detected on /lonely"):
             assert TopicCheck().check().warning == 1
-        with pytest.warns(UserWarning, match=r"ERROR: QoS .*/weak.*reliability"):
+        with pytest.warns(UserWarning, match=r"ERROR: QoS .*/weak.*; Best effort publisher and reliable subscription;"):
             assert QoSCompatibilityCheck().check().error == 1
         with pytest.warns(UserWarning, match="ERROR: QoS"):
             failed, fails, _ = run_checks(exclude_packages=True)
@@ -37,6 +37,13 @@ def test_ends_that_do_not_meet_are_counted(node: Node) -> None:  # noqa: F811
         assert fails == len(failed)
         titles = {report.name for report in generate_reports(categories={"topic", "middleware"})}
         assert titles == {"TOPIC LIST", "QOS COMPATIBILITY LIST", "RMW MIDDLEWARE"}
+        pair = dict(QoSCompatibilityReport().report().items)
+        assert pair == {
+            "topic [type]": "/weak [std_msgs/msg/String]",
+            "publisher node": node.get_name(),
+            "subscriber node": node.get_name(),
+            "compatibility status": "ERROR: Best effort publisher and reliable subscription;",
+        }
         versions = [one for one in generate_reports(exclude_packages=["std_msgs"]) if one.name == "PACKAGE VERSIONS"]
         assert "std_msgs" not in dict(versions[0].items)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ros2cli.listing import topics
 
 from daidalos.transport.graph import EndpointInfo, EndpointKind
-from daidalos.transport.qos import Policy, incompatibilities
+from daidalos.transport.qos import Policy, incompatibilities, incompatibility_text
 from ros2doctor.api import DoctorCheck, DoctorReport, Report, Result
 from ros2doctor.api.format import doctor_error
 from ros2doctor.api.graph import current_graph
@@ -27,7 +27,7 @@ class QoSCompatibilityCheck(DoctorCheck):
             if policies:
                 doctor_error(
                     f"QoS compatibility error found on topic [{name}]: {publisher.node.full_name} does not reach "
-                    f"{subscription.node.full_name}; {_status(policies)}"
+                    f"{subscription.node.full_name}; {_status(policies).removeprefix('ERROR: ')}"
                 )
                 result.add_error()
         return result
@@ -45,8 +45,8 @@ class QoSCompatibilityReport(DoctorReport):
         report = Report("QOS COMPATIBILITY LIST")
         for name, publisher, subscription, policies in _pairs():
             report.add_to_report("topic [type]", f"{name} [{publisher.type_name}]")
-            report.add_to_report("publisher node", publisher.node.full_name)
-            report.add_to_report("subscriber node", subscription.node.full_name)
+            report.add_to_report("publisher node", publisher.node.name)
+            report.add_to_report("subscriber node", subscription.node.name)
             report.add_to_report("compatibility status", _status(policies))
         if not report.items:
             report.add_to_report("compatibility status", "No publisher/subscriber pairs found")
@@ -64,6 +64,4 @@ def _pairs() -> list[_Pair]:
 
 
 def _status(policies: list[Policy]) -> str:
-    if not policies:
-        return "OK"
-    return f"ERROR: {', '.join(policy.name.lower() for policy in policies)} offered by the publisher is not enough"
+    return incompatibility_text(policies) or "OK"
