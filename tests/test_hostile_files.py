@@ -118,8 +118,9 @@ def _policy(path: Path) -> Any:
 
 def _frame(path: Path) -> Any:
     from daidalos.studio.protocol import parse_text
+    from daidalos.studio.records import complete
 
-    return parse_text(path.read_text(encoding="utf-8", errors="replace"))
+    return complete(parse_text(path.read_text(encoding="utf-8", errors="replace")))
 
 
 Reader = Callable[[Path], Any]

@@ -17,7 +17,15 @@ from daidalos.studio import connections
 from daidalos.studio import stream_client as client_module
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.connections import Connection, Connections
-from daidalos.studio.limits import MAX_ENTRIES, MAX_ERRORS, MAX_PUBLICATIONS, PIECE_BYTES, SLICE_REQUESTS, Turn
+from daidalos.studio.limits import (
+    MAX_ENTRIES,
+    MAX_ERRORS,
+    MAX_PUBLICATIONS,
+    MAX_VALUES,
+    PIECE_BYTES,
+    SLICE_REQUESTS,
+    Turn,
+)
 from daidalos.studio.protocol import SUBPROTOCOLS
 from daidalos.studio.server import StudioServer
 
@@ -119,6 +127,14 @@ def test_a_client_advertises_so_many_channels(server):
             ]
             await client.say("advertise", channels=channels)
         assert f"more than {MAX_PUBLICATIONS}" in (await client.expect("status", level=2))["message"]
+
+    talk(server, conversation)
+
+
+def test_a_text_of_many_values_is_refused_before_it_is_read(server):
+    async def conversation(client):
+        await client.say("getParameters", parameterNames=[[0] * (MAX_VALUES + 1)])
+        assert f"more than {MAX_VALUES} values" in (await client.expect("status", level=2))["message"]
 
     talk(server, conversation)
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from daidalos.studio import frames, protocol
 from daidalos.studio.frames import PlaybackControl, Publish, ServiceRequest
 from daidalos.studio.protocol import ClientMessage, ProtocolError
+from daidalos.studio.records import complete
 from daidalos.studio.source import Graph, Parameter, Service, Topic
 
 U32 = st.integers(0, 2**32 - 1)
@@ -77,12 +78,12 @@ def test_any_bytes_are_read_or_refused(frame):
 @given(st.text(max_size=60) | st.builds(json.dumps, st.dictionaries(TEXT, TEXT | st.integers())))
 def test_any_text_is_read_or_refused(frame):
     with contextlib.suppress(ProtocolError):
-        assert isinstance(protocol.parse_text(frame), ClientMessage)
+        assert isinstance(complete(protocol.parse_text(frame)), ClientMessage)
 
 
 def test_reads_what_a_client_says():
     frame = '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 4294967295, "more": true}]}'
-    assert protocol.parse_text(frame) == protocol.Subscribe((protocol.ChannelSubscription(1, 4294967295),))
+    assert complete(protocol.parse_text(frame)) == protocol.Subscribe((protocol.ChannelSubscription(1, 4294967295),))
 
 
 @pytest.mark.parametrize(
@@ -100,12 +101,12 @@ def test_reads_what_a_client_says():
 )
 def test_says_which_field_is_not_what_it_must_be(frame, error):
     with pytest.raises(ProtocolError, match=re.escape(error)):
-        protocol.parse_text(json.dumps(frame))
+        complete(protocol.parse_text(json.dumps(frame)))
 
 
 def test_deeply_nested_text_is_refused():
     with pytest.raises(ProtocolError):
-        protocol.parse_text("[" * 100_000)
+        complete(protocol.parse_text("[" * 100_000))
 
 
 @pytest.mark.parametrize(
@@ -143,7 +144,7 @@ def test_parameters_survive_the_way_to_a_client_and_back(value):
 
 
 def _parse_parameter(entry):
-    message = protocol.parse_text(json.dumps({"op": "setParameters", "parameters": [entry]}))
+    message = complete(protocol.parse_text(json.dumps({"op": "setParameters", "parameters": [entry]})))
     return protocol.parse_parameter(message.parameters[0])
 
 
@@ -253,4 +254,11 @@ def test_values_that_no_parameter_can_hold_are_refused(value):
 
 def test_a_lone_surrogate_is_refused():
     with pytest.raises(ProtocolError, match="not JSON"):
-        protocol.parse_text('{"op": "getParameters", "parameterNames": ["/a.\\ud800"]}')
+        complete(protocol.parse_text('{"op": "getParameters", "parameterNames": ["/a.\\ud800"]}'))
+
+
+def test_a_long_list_is_read_in_steps_and_many_values_are_refused():
+    frame = json.dumps({"op": "subscribe", "subscriptions": [{"id": number, "channelId": 1} for number in range(100)]})
+    assert len(list(protocol.parse_text(frame))) == 100
+    with pytest.raises(ProtocolError, match="more than 10 values"):
+        next(protocol.parse_text(frame, max_values=10))

@@ -21,6 +21,7 @@ from daidalos.studio.limits import (
     MAX_ERRORS,
     MAX_PENDING_REQUESTS,
     MAX_PUBLICATIONS,
+    MAX_VALUES,
     MAX_WATCHED,
 )
 from daidalos.studio.outbox import Outbox
@@ -116,7 +117,7 @@ class Client(StreamClient):
             self.outbox.put_reply(protocol.status(level, text[:MAX_ERROR_LENGTH]))
 
     async def _receive_text(self, data: str) -> None:
-        match protocol.parse_text(data, MAX_ENTRIES):
+        match await self._turn.share_steps(protocol.parse_text(data, MAX_ENTRIES, MAX_VALUES)):
             case protocol.Subscribe(subscriptions):
                 await self._subscribe(subscriptions)
             case protocol.Unsubscribe(numbers):
@@ -128,7 +129,7 @@ class Client(StreamClient):
             case protocol.GetParameters(names, request):
                 self._start(self._answer_parameters(self._source.get_parameters(names), request))
             case protocol.SetParameters(entries, request):
-                self._set_parameters(entries, request)
+                await self._set_parameters(entries, request)
             case protocol.SubscribeParameterUpdates(names):
                 if len(self._watched) + len(names) > MAX_WATCHED:
                     raise ProtocolError(f"more than {MAX_WATCHED} parameters are watched; name none to watch all")
@@ -274,8 +275,11 @@ class Client(StreamClient):
 
     # Parameters ------------------------------------------------------------------------------------------
 
-    def _set_parameters(self, entries: Iterable[protocol.ParameterEntry], request: str | None) -> None:
-        wanted = [protocol.parse_parameter(entry) for entry in entries]
+    async def _set_parameters(self, entries: Iterable[protocol.ParameterEntry], request: str | None) -> None:
+        wanted = []
+        for entry in entries:
+            wanted.append(protocol.parse_parameter(entry))
+            await self._turn.share()
         self._start(self._answer_parameters(self._source.set_parameters(wanted), request, silent=request is None))
 
     async def _answer_parameters(

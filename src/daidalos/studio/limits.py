@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Generator
+from typing import TypeVar, cast
+
+T = TypeVar("T")
 
 MAX_CONNECTIONS = 256
 """Connections that are open at once; of these that have not sent a request, the oldest makes room for a new one."""
@@ -27,6 +31,8 @@ MAX_TEXT_BYTES = 4 << 20
 """Bytes of one text frame."""
 MAX_ENTRIES = 2048
 """Entries of one list of a text frame."""
+MAX_VALUES = 32 << 10
+"""Values of one text frame."""
 MAX_PUBLICATIONS = 256
 """Channels that one client advertises."""
 MAX_WATCHED = 4096
@@ -83,3 +89,12 @@ class Turn:
             used, self._used_s, self._requests = self._used_s, 0.0, 0
             await asyncio.sleep(used)
             self._begin = time.perf_counter()
+
+    async def share_steps(self, steps: Generator[None, None, T]) -> T:
+        """Return the result of steps, with rests between them."""
+        while True:
+            try:
+                next(steps)
+            except StopIteration as end:
+                return cast(T, end.value)
+            await self.share()

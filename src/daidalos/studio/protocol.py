@@ -10,12 +10,12 @@ import base64
 import json
 import math
 import reprlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Generator, Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, ClassVar
 
-from daidalos.studio.records import RecordError, Uint32, from_json, to_json
+from daidalos.studio.records import RecordError, Uint32, from_json_in_steps, to_json
 from daidalos.studio.source import Graph, Parameter, Service, Topic
 
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
@@ -325,14 +325,27 @@ class FetchAsset(ClientMessage, op="fetchAsset"):
     uri: str
 
 
-def parse_text(frame: str, max_entries: int | None = None) -> ClientMessage:
-    """Read a client's text frame: a JSON object with a string ``op`` and lists of at most `max_entries`.
+def parse_text(
+    frame: str, max_entries: int | None = None, max_values: int | None = None
+) -> Generator[None, None, ClientMessage]:
+    """Read a client's text frame in steps: a JSON object with a string ``op``.
+
+    Parameters
+    ----------
+    frame
+        The frame.
+    max_entries
+        The longest list that is read, in steps of an entry.
+    max_values
+        How many commas the frame may have, which bound the values that are read in one step.
 
     Raises
     ------
     ProtocolError
         When it is anything else, or a field is not what it must be.
     """
+    if max_values is not None and frame.count(",") > max_values:
+        raise ProtocolError(f"a text frame has more than {max_values} values")
     try:
         message = json.loads(frame)
         if "\\u" in frame:
@@ -348,7 +361,7 @@ def parse_text(frame: str, max_entries: int | None = None) -> ClientMessage:
     if kind is None:
         raise ProtocolError(f"unknown op {message['op']!r}")
     try:
-        return from_json(kind, message)
+        return (yield from from_json_in_steps(kind, message))
     except RecordError as error:
         raise ProtocolError(str(error)) from None
 

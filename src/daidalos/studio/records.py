@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from functools import cache
 from types import NoneType
-from typing import Annotated, Any, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeGuard, TypeVar, cast, get_args, get_origin, get_type_hints
 
 T = TypeVar("T")
 
@@ -49,12 +49,26 @@ def from_json(record: type[T], value: Mapping[str, Any]) -> T:
     RecordError
         When a required key is missing, or a value has another type.
     """
+    return complete(from_json_in_steps(record, value))
+
+
+def complete(steps: Generator[None, None, T]) -> T:
+    """Do all steps and return their result."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return cast(T, end.value)
+
+
+def from_json_in_steps(record: type[T], value: Mapping[str, Any]) -> Generator[None, None, T]:
+    """Read a record as `from_json` does, and yield after each record of its lists."""
     arguments = {}
     for name, key, read, expected, is_needed in _layout(record):  # type: ignore[arg-type]
         found = value.get(key)
         if found is not None:
             try:
-                arguments[name] = read(found)
+                arguments[name] = (yield from read(found)) if isinstance(read, _RecordList) else read(found)
             except _UnfitError:
                 raise _wrong(key, expected) from None
         elif is_needed:
@@ -100,7 +114,8 @@ def _without_none(hint: Any) -> Any:
 def _reader(hint: Any) -> Callable[[Any], Any]:
     """Return a function that reads the value of a field's type; it raises `_UnfitError`."""
     if get_origin(hint) is tuple:
-        return _list_reader(get_args(hint)[0])
+        element = get_args(hint)[0]
+        return _RecordList(element) if is_record(element) else _list_reader(element)
     if hint not in _KINDS and not is_record(hint):
         return lambda value: value
     fits = _check(hint)
@@ -115,14 +130,29 @@ def _reader(hint: Any) -> Callable[[Any], Any]:
 
 def _list_reader(element: Any) -> Callable[[Any], tuple[Any, ...]]:
     fits = _check(element)
-    is_plain = not is_record(element)
 
     def read(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, list) or not all(map(fits, value)):
             raise _UnfitError
-        return tuple(value) if is_plain else tuple(from_json(element, item) for item in value)
+        return tuple(value)
 
     return read
+
+
+@dataclass(frozen=True)
+class _RecordList:
+    """Function that reads a list of records, one a step."""
+
+    element: type[Any]
+
+    def __call__(self, value: Any) -> Generator[None, None, tuple[Any, ...]]:
+        if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+            raise _UnfitError
+        records = []
+        for item in value:
+            records.append((yield from from_json_in_steps(self.element, item)))
+            yield
+        return tuple(records)
 
 
 def _check(hint: Any) -> Callable[[Any], bool]:
