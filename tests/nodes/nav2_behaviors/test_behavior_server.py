@@ -194,3 +194,15 @@ def test_the_published_footprint_is_checked_for_collisions(executor: SingleThrea
         GoalStatus.STATUS_ABORTED,
         DriveOnHeading.Result.COLLISION_AHEAD,
     )
+
+
+def test_topics_by_their_former_names_are_listened_to() -> None:
+    """Humble's parameter file calls the topics of the costmap otherwise."""
+    rclpy.init(args=["--ros-args", "-p", "costmap_topic:=/seen", "-p", "footprint_topic:=/outline"])
+    server = BehaviorServer()
+    try:
+        assert server.trigger_configure() == TransitionCallbackReturn.SUCCESS
+        assert {"/seen", "/outline"} <= {one.topic_name for one in server.subscriptions}
+    finally:
+        server.destroy_node()
+        rclpy.try_shutdown()

@@ -13,6 +13,7 @@ from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import (
     ComputePathThroughPoses,
     ComputePathToPose,
+    ComputeRoute,
     FollowPath,
     NavigateThroughPoses,
     NavigateToPose,
@@ -287,6 +288,35 @@ def test_the_reason_of_a_failure_comes_through(bench: Bench, server: str, code: 
     played.end("abort", error_code=code, error_msg=message)
     status, result = bench.stage.end(handle)
     assert (status, result.error_code, result.error_msg) == (GoalStatus.STATUS_ABORTED, code, message)
+
+
+def test_an_error_of_a_route_is_reported_by_the_prefix_of_its_name(
+    stage: Callable[[dict[str, Any]], Stage], tmp_path: Path
+) -> None:
+    """The route server, played by the test, has no graph; Kilted's parameters have prefixes of names."""
+    file = tmp_path / "route.xml"
+    node = '<ComputeRoute goal_id="1" error_code_id="{dock_route_error_code}" error_msg="{dock_route_error_msg}"/>'
+    file.write_text(TREE[: TREE.index("<Sequence>")] + node + TREE[TREE.index("</Sequence>") + 11 :])
+    prefixes = ["dock_route", "compute_route"]
+    parameters = {"default_nav_to_pose_bt_xml": str(file), "error_code_name_prefixes": prefixes}
+    test = stage({"/bt_navigator": parameters})
+    test.add_robot()
+
+    async def abort(goal: Any) -> Any:
+        goal.abort()
+        return ComputeRoute.Result(error_code=ComputeRoute.Result.NO_VALID_GRAPH, error_msg="there is no graph")
+
+    ActionServer(test.node, ComputeRoute, "compute_route", abort)
+    for name, code in (("dock_route", 0), ("compute_route", ComputeRoute.Result.NO_VALID_GRAPH)):
+        file.write_text(file.read_text().replace("dock_route", name))
+        navigator = test.add(BtNavigator())
+        navigator.trigger_configure()
+        navigator.trigger_activate()
+        status, result = test.end(test.send(NavigateToPose, "navigate_to_pose", pose=pose(1.0)))
+        assert (status, result.error_msg) == (GoalStatus.STATUS_ABORTED, "there is no graph")
+        assert result.error_code == code
+        navigator.trigger_deactivate()
+        navigator.trigger_cleanup()
 
 
 def test_a_server_that_is_not_there_is_named(stage: Callable[[dict[str, Any]], Stage], tree: Path) -> None:

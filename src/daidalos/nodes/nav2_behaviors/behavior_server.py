@@ -23,7 +23,7 @@ from daidalos.nodes.cycles import Cycle, wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_listener import CostmapListener
 from daidalos.nodes.navigation_extensions import ExtensionMaker
-from daidalos.nodes.parameters import declare, declare_without_effect
+from daidalos.nodes.parameters import declare, declare_name, declare_without_effect
 from daidalos.samples.fields import duration_message, nanoseconds, seconds
 
 _NOTHING = Costmap.filled(1, 1, 0.05, (0.0, 0.0))
@@ -43,6 +43,12 @@ _DEFAULT_PLUGINS = {
 
 _SHARED = ("simulate_ahead_time", "max_rotational_vel", "min_rotational_vel", "rotational_acc_lim")
 """Parameters of the server that are defaults of the behaviours' parameters."""
+
+_FORMER_NAMES = (
+    ("local_costmap_topic", "costmap_topic", "local_costmap/costmap_raw"),
+    ("local_footprint_topic", "footprint_topic", "local_costmap/published_footprint"),
+)
+"""Parameters that have another name in Nav2's older releases, that name, and the default."""
 
 _WITHOUT_EFFECT = {
     "transform_tolerance": "the age of transforms is limited by data_timeout",
@@ -96,7 +102,12 @@ class BehaviorServer(ManagedNode):
 
     def __init__(self, node_name: str = "behavior_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self._settings = declare(self, BehaviorServerParameters)
+        older = {
+            name: declare_name(self, former, str(value), f"Former name of {name}.")
+            for name, former, value in _FORMER_NAMES
+            if former in self._parameter_overrides
+        }
+        self._settings = declare(self, BehaviorServerParameters, defaults=older)
         self._behaviors: list[Behavior[Any]] = []
         self._velocity = np.zeros(3)
         self._buffer = Buffer()

@@ -61,9 +61,17 @@ class BtNavigatorParameters(Parameters):
         tuple(NAVIGATORS), "Names of the navigators.", choices=tuple(NAVIGATORS), unique=True, read_only=True
     )
     error_code_names: tuple[str, ...] = parameter(
-        ("compute_path_error_code", "follow_path_error_code"),
+        ("compute_path_error_code", "follow_path_error_code", "compute_route_error_code"),
         "Names on the blackboard of the error codes that a failed goal reports, the first that is set.",
     )
+    error_code_name_prefixes: tuple[str, ...] = parameter(
+        (), "The same without their ends '_error_code'; they come before error_code_names."
+    )
+
+    @property
+    def all_error_code_names(self) -> tuple[str, ...]:
+        """Names on the blackboard of the error codes that a failed goal reports."""
+        return tuple(f"{one}_error_code" for one in self.error_code_name_prefixes) + self.error_code_names
 
 
 class BtNavigator(ManagedNode):
@@ -197,7 +205,7 @@ class BtNavigator(ManagedNode):
         if status == Status.SUCCESS:
             self.get_logger().info("the goal is reached")
         elif status == Status.FAILURE:
-            result.error_code, result.error_msg = _reason(navigation.blackboard, self._settings.error_code_names)
+            result.error_code, result.error_msg = _reason(navigation.blackboard, self._settings.all_error_code_names)
             self.get_logger().error(f"the goal is given up: {result.error_msg}")
         else:
             self.get_logger().info("the goal was cancelled")
@@ -211,6 +219,12 @@ def _reason(blackboard: Blackboard, names: tuple[str, ...]) -> tuple[int, str]:
         "compute_path": action.ComputePathThroughPoses if "goals" in blackboard else action.ComputePathToPose,
         "follow_path": action.FollowPath,
         "smoother": action.SmoothPath,
+        "compute_route": action.ComputeRoute,
+        "route": action.ComputeAndTrackRoute,
+        "dock_robot": action.DockRobot,
+        "undock_robot": action.UndockRobot,
+        "nav_to_pose": action.NavigateToPose,
+        "nav_thru_poses": action.NavigateThroughPoses,
         "spin": action.Spin,
         "backup": action.BackUp,
         "drive_on_heading": action.DriveOnHeading,
