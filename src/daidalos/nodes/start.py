@@ -14,6 +14,7 @@ import sys
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import ModuleType, TracebackType
+    from typing import NoReturn
 
 if __name__ == "__main__":
     _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
@@ -38,7 +39,7 @@ def main() -> None:
     site.main()
     sys.excepthook = show
     package, module, *arguments = sys.argv[1:]
-    sys.exit(run_module(package, module, arguments))
+    _end(run_module(package, module, arguments))
 
 
 def run_module(package: str, module: str, arguments: list[str]) -> int:
@@ -49,6 +50,24 @@ def run_module(package: str, module: str, arguments: list[str]) -> int:
     sys.argv = [str(program.__file__), *arguments]
     status: int = program.main() if hasattr(program, "main") else _run_node(program, module)
     return status
+
+
+def _end(status: int) -> NoReturn:
+    """End the process as `sys.exit` does, but let the system free its memory.
+
+    Python would free each object of each module, which takes a second where a whole robot runs in the process.
+    """
+    import atexit
+    import os
+    import threading
+    from contextlib import suppress
+
+    threading._shutdown()  # type: ignore[attr-defined]
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):  # it may be closed
+            stream.flush()
+    os._exit(status or 0)
 
 
 def _run_node(program: ModuleType, module: str) -> int:
