@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from hector_nav_msgs.srv import GetRecoveryInfo, GetRobotTrajectory
 from nav_msgs.msg import Path
 from rcl_interfaces.msg import Log
 from std_msgs.msg import String
@@ -36,6 +37,16 @@ def test_the_way_of_a_frame(stage: Callable[[dict[str, Any]], Stage]) -> None:
     assert [round(one.pose.position.x, 1) for one in paths[-1].poses] == [round(0.1 * k, 1) for k in range(10)]
     set_stage.step_for(1.0)
     assert len(paths[-1].poses) == 10  # the same transform is recorded once
+    path = set_stage.call(GetRobotTrajectory, "/trajectory").trajectory
+    assert path.poses == paths[-1].poses
+    info = set_stage.call(
+        GetRecoveryInfo, "/trajectory_recovery_info", request_time=path.poses[7].header.stamp, request_radius=0.35
+    )
+    assert info.req_pose == path.poses[7]
+    assert info.radius_entry_pose == path.poses[3]
+    assert info.trajectory_radius_entry_pose_to_req_pose.poses == path.poses[3:8]
+    nothing = set_stage.call(GetRecoveryInfo, "/trajectory_recovery_info", request_radius=1.0)
+    assert nothing.trajectory_radius_entry_pose_to_req_pose.poses == []
     set_stage.publish("syscommand", String(data="reset"))
     set_stage.step_until(lambda: any("the path was reset" in one.msg for one in log))
     set_stage.step_until(lambda: len(paths[-1].poses) == 1)

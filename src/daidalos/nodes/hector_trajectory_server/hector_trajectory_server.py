@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from rclpy.node import Node
@@ -20,12 +21,14 @@ REPORT_INTERVAL = 10.0
 class TrajectoryServer(Node):
     """Node that publishes ``trajectory``; the text ``reset`` on ``syscommand`` empties it.
 
+    The service ``trajectory`` returns the path, ``trajectory_recovery_info`` its part that led to a place.
     Its parameters are those of `TrajectoryServerParameters`. A transform that time going back makes older than the
     last pose begins a new path.
     """
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("hector_trajectory_server", **kwargs)
+        from hector_nav_msgs.srv import GetRecoveryInfo, GetRobotTrajectory
         from nav_msgs.msg import Path
         from std_msgs.msg import String
         from tf2_ros import Buffer, TransformListener
@@ -37,6 +40,8 @@ class TrajectoryServer(Node):
         self._listener = TransformListener(self._buffer, self)
         self._publisher = self.create_publisher(Path, "trajectory", LATCHED)
         self.create_subscription(String, "syscommand", self._on_command, 10)
+        self.create_service(GetRobotTrajectory, "trajectory", self._on_trajectory)
+        self.create_service(GetRecoveryInfo, "trajectory_recovery_info", self._on_recovery)
         self.create_timer(1.0 / p.trajectory_update_rate, self._record)
         self.create_timer(1.0 / p.trajectory_publish_rate, self._publish)
 
@@ -68,6 +73,25 @@ class TrajectoryServer(Node):
         self._path.header.stamp = self.get_clock().now().to_msg()
         self._publisher.publish(self._path)
 
+    def _on_trajectory(self, _: Any, response: Any) -> Any:
+        response.trajectory = self._path
+        return response
+
+    def _on_recovery(self, request: Any, response: Any) -> Any:
+        """Return the path from where the robot came within the radius to where it was at the time, or just before."""
+        time_ns = nanoseconds(request.request_time)
+        poses = [one for one in self._path.poses if nanoseconds(one.header.stamp) <= time_ns]
+        if not poses or not request.request_radius >= 0.0:
+            text = f"no path to where the robot was at {time_ns * 1e-9:.2f} s is known"
+            self.get_logger().error(f"{text}, or the radius {request.request_radius} is none")
+            return response
+        outside = (k for k in reversed(range(len(poses))) if _distance(poses[k], poses[-1]) > request.request_radius)
+        led = poses[next(outside, 0) :]
+        response.trajectory_radius_entry_pose_to_req_pose.header = self._path.header
+        response.trajectory_radius_entry_pose_to_req_pose.poses = led
+        response.radius_entry_pose, response.req_pose = led[0], led[-1]
+        return response
+
     def _reset(self) -> None:
         self._path.poses = []
 
@@ -75,6 +99,12 @@ class TrajectoryServer(Node):
         if message.data == "reset":
             self._reset()
             self.get_logger().info("the path was reset")
+
+
+def _distance(first: Any, second: Any) -> float:
+    """Return the distance [m] of two poses."""
+    here, there = first.pose.position, second.pose.position
+    return math.dist((here.x, here.y, here.z), (there.x, there.y, there.z))
 
 
 def main() -> int:
