@@ -76,6 +76,23 @@ def test_formats_hold_the_same_solid(wedge, kind):
     assert trimesh.Trimesh(mesh.vertices, mesh.faces).volume == pytest.approx(solid.volume, rel=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("m.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n1\n"),
+        ("m.dae", b"<COLLADA><library_geometries><geometry/></library_geometries></COLLADA>"),
+        ("m.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n"),
+    ],
+)
+def test_a_damaged_file_is_explained(tmp_path, name, content):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(
+        DescriptionError, match=f"{name} cannot be read: it is incomplete, damaged or no {name[2:]} file"
+    ):
+        load_mesh(Mesh(name, path))
+
+
 def test_mirrored_meshes_still_look_outwards(wedge):
     folder, solid = wedge
     solid.export(folder / "w.stl")

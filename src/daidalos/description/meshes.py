@@ -159,8 +159,14 @@ def read_scene(path: Path, where: str, with_materials: bool = False) -> Any:
         return scene if unit == 1.0 else scene.scaled(unit)
     except Exception as problem:
         # The readers of the formats raise whatever their file's content leads them to.
-        reason = " ".join(str(problem).split()) or type(problem).__name__
-        raise DescriptionError(f"mesh {path} cannot be read: {reason}", where) from None
+        raise DescriptionError(f"mesh {path} cannot be read: {_reason(problem, kind)}", where) from None
+
+
+def _reason(problem: Exception, kind: str) -> str:
+    """Return why a reader failed; errors that only mean something in its code say that the file is damaged."""
+    if isinstance(problem, LookupError | TypeError | AttributeError | AssertionError):
+        return f"it is incomplete, damaged or no {kind} file"
+    return " ".join(str(problem).split()) or type(problem).__name__
 
 
 def _collada_unit(path: Path) -> float:
