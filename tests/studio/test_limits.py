@@ -17,6 +17,7 @@ from daidalos.studio import connections
 from daidalos.studio import stream_client as client_module
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.connections import Connection, Connections
+from daidalos.studio.frames import asset_head
 from daidalos.studio.limits import (
     MAX_ENTRIES,
     MAX_ERRORS,
@@ -250,6 +251,44 @@ def test_clients_that_never_stop_asking_leave_the_others_latency_alone(server):
                 assert time.monotonic() - begin < TIMEOUT_S / 10
 
     talk(server, conversation)
+
+
+@pytest.mark.parametrize("last", [1, 125, 126, 65535, 65536])
+def test_a_large_message_is_sent_in_fragments(server, tmp_path, last):
+    data = (bytes(range(256)) * 3072)[: (512 << 10) + last - len(asset_head(1))]
+    (tmp_path / "share" / "pkg" / "some.stl").write_bytes(data)
+
+    async def conversation(client):
+        await client.say("fetchAsset", uri="package://pkg/some.stl", requestId=1)
+        assert (await client.expect("asset", request=1))["data"] == data
+
+    talk(server, conversation)
+    request = json.dumps({"op": "fetchAsset", "uri": "package://pkg/some.stl", "requestId": 1}).encode()
+    with hostile(server, b"\x81" + bytes([0x80 | len(request)]) + bytes(4) + request) as opened:
+        heads = []
+        while not heads or heads[-1] != (0x80, last):
+            heads.append(_skip_frame(opened))
+    assert heads[-3:] == [(0x02, 256 << 10), (0x00, 256 << 10), (0x80, last)]
+
+
+def _skip_frame(opened: socket.socket) -> tuple[int, int]:
+    """Read a frame, and return the first byte of its head and its length, as short as it can be written."""
+
+    def read(size: int) -> bytes:
+        data = b""
+        while len(data) < size:
+            data += opened.recv(size - len(data))
+        return data
+
+    first, length = read(2)
+    if length == 126:
+        (length,) = struct.unpack(">H", read(2))
+        assert length > 125
+    elif length == 127:
+        (length,) = struct.unpack(">Q", read(8))
+        assert length > 65535
+    read(length)
+    return first, length
 
 
 def test_memory_that_waits_to_be_read_is_taken_from_who_reads_least(monkeypatch):

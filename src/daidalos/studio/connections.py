@@ -64,6 +64,8 @@ class Connection(asyncio.Protocol):
         self._wants = False
         self._feeding = False
         self._throttled = False
+        self._writable = asyncio.Event()
+        self._writable.set()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Implement `asyncio.Protocol`."""
@@ -77,6 +79,7 @@ class Connection(asyncio.Protocol):
     def connection_lost(self, error: Exception | None) -> None:
         """Implement `asyncio.Protocol`."""
         self._connections.remove(self)
+        self._writable.set()
         self.handler.connection_lost(error)
 
     def data_received(self, data: bytes) -> None:
@@ -150,11 +153,27 @@ class Connection(asyncio.Protocol):
 
     def pause_writing(self) -> None:
         """Implement `asyncio.Protocol`."""
+        self._writable.clear()
         self.handler.pause_writing()
 
     def resume_writing(self) -> None:
         """Implement `asyncio.Protocol`."""
+        self._writable.set()
         self.handler.resume_writing()
+
+    async def write(self, data: bytes) -> None:
+        """Send bytes, and wait until the client has read most of them.
+
+        Raises
+        ------
+        ConnectionResetError
+            When the connection is closed or being closed.
+        """
+        if self.transport is None or self.transport.is_closing():
+            raise ConnectionResetError("the connection is closed")
+        self.transport.write(data)
+        await asyncio.sleep(0)
+        await self._writable.wait()
 
     def complete(self) -> None:
         """Record that a request or message was received as a whole."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import struct
 from collections.abc import Callable, Coroutine
 from typing import Any, cast
 
@@ -20,6 +21,9 @@ _LOGGER = logging.getLogger(__name__)
 _CLOSE_TIMEOUT_S = 0.5
 """Timeout of the closing handshake with a client that is closed for what it did."""
 _POLICY_VIOLATION = 1008
+_FRAGMENT_BYTES = 256 << 10
+"""Bytes of a message that are sent at once: to copy a large one would take the event loop's time from all others."""
+_BINARY, _CONTINUATION, _FINAL = 0x2, 0x0, 0x80  # RFC 6455, 5.2
 
 
 class StreamClient:
@@ -55,6 +59,7 @@ class StreamClient:
         self._turn = Turn(turns)
         self._drained = asyncio.Event()
         self._closing: asyncio.Task[None] | None = None
+        self._sending_bytes = 0
         loop = asyncio.get_running_loop()
         self._awake = asyncio.Event()
         self.outbox = Outbox(lambda: _wake(loop, self._awake), make_frame)
@@ -89,8 +94,8 @@ class StreamClient:
 
     @property
     def waiting_bytes(self) -> int:
-        """Bytes of replies that wait for the client."""
-        return self.outbox.reply_bytes
+        """Bytes that wait for the client: replies, and what is left of a message that is being sent."""
+        return self.outbox.reply_bytes + self._sending_bytes
 
     def stop(self, reason: str) -> None:
         """Close the connection with a reason, for the client's developer and the log."""
@@ -120,9 +125,25 @@ class StreamClient:
                 for one in frame.frames if isinstance(frame, Pieces) else (frame,):
                     if isinstance(one, str):
                         await self._socket.send_str(one)
-                    else:
+                    elif len(one) <= _FRAGMENT_BYTES:
                         await self._socket.send_bytes(cast(bytes, one))  # it takes a bytearray, too
+                    else:
+                        await self._send_in_fragments(one)
                     await self._after_frame()
+
+    async def _send_in_fragments(self, message: bytes | bytearray) -> None:
+        """Send a binary message in fragments, between which others have their turn (RFC 6455, 5.4)."""
+        view = memoryview(message)
+        try:
+            for begin in range(0, len(view), _FRAGMENT_BYTES):
+                if self._socket.closed:
+                    raise ConnectionResetError("the WebSocket is closed")
+                piece = view[begin : begin + _FRAGMENT_BYTES]
+                self._sending_bytes = len(view) - begin - len(piece)
+                first = (_CONTINUATION if begin else _BINARY) | (0 if self._sending_bytes else _FINAL)
+                await self._connection.write(_head(first, len(piece)) + piece)
+        finally:
+            self._sending_bytes = 0
 
     async def _check_text(self, data: str) -> None:
         if len(data) > self._max_text_bytes:
@@ -157,6 +178,15 @@ class StreamClient:
 
     async def _after_frame(self) -> None:
         """Wait between frames, where the client asks for it."""
+
+
+def _head(first: int, length: int) -> bytes:
+    """Return the head of an unmasked frame, in as few bytes as there can be (RFC 6455, 5.2)."""
+    if length < 126:
+        return struct.pack(">BB", first, length)
+    if length < 1 << 16:
+        return struct.pack(">BBH", first, 126, length)
+    return struct.pack(">BBQ", first, 127, length)
 
 
 def _wake(loop: asyncio.AbstractEventLoop, awake: asyncio.Event) -> None:
