@@ -40,6 +40,7 @@ from daidalos.transport.cyclonedds.loopback import confine, drops_what_others_se
 from daidalos.transport.cyclonedds.qos import HISTORY_KEY, dds_qos, history_text
 from daidalos.transport.cyclonedds.reception import Reception, SampleReader
 from daidalos.transport.cyclonedds.writer import Writer
+from daidalos.transport.dds_types import dds_type
 from daidalos.transport.environment import DiscoveryRange, Environment, EnvironmentVariableError
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Durability, History, Qos
@@ -261,7 +262,7 @@ class CycloneBackend(Backend):
         """Create a writer or reader."""
         library = self._library
         described = TopicDescriptor(
-            size=1, align=1, type_name=names.dds_type(type_name).encode(), ops_count=2, ops=_ONE_OCTET, meta=b""
+            size=1, align=1, type_name=dds_type(type_name).encode(), ops_count=2, ops=_ONE_OCTET, meta=b""
         )
         entity = library.check(
             library.dds_create_topic(self._participant, c.byref(described), topic.encode(), None, None),

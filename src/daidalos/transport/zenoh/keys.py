@@ -6,6 +6,7 @@ from typing import TypeVar
 
 from xxhash import xxh3_128_intdigest
 
+from daidalos.transport.dds_types import dds_type, ros_type
 from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
 from daidalos.transport.qos import (
     DEFAULT_DEPTH,
@@ -44,20 +45,6 @@ def answers(session: str) -> str:
 def data_key(domain: int, name: str, type_name: str, type_hash: str) -> str:
     """Return the key of samples, requests and replies."""
     return f"{domain}/{name.strip('/')}/{dds_type(type_name)}/{type_hash or _NO_HASH}"
-
-
-def dds_type(type_name: str) -> str:
-    """Return the DDS name of a type: ``std_msgs/msg/String`` -> ``std_msgs::msg::dds_::String_``."""
-    package, kind, name = type_name.split("/")
-    return f"{package}::{kind}::dds_::{name}_"
-
-
-def ros_type(text: str) -> str:
-    """Return the ROS name of a DDS type; anything else is returned unchanged."""
-    parts = text.split("::")
-    if len(parts) == 4 and parts[2] == "dds_":
-        return f"{parts[0]}/{parts[1]}/{parts[3].removesuffix('_')}"
-    return text
 
 
 def node_token(domain: int, session: str, number: int, name: str, namespace: str, enclave: str) -> str:
