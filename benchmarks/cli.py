@@ -39,7 +39,7 @@ def run() -> dict[str, float]:
 
 
 def measure_start() -> dict[str, float]:
-    """What costs time whatever is asked."""
+    """Measure what costs time whatever is asked."""
     return {
         "command.python_s": seconds([sys.executable, "-c", "pass"]),
         "command.import_and_node_s": seconds([sys.executable, "-c", NODE]),
@@ -48,7 +48,7 @@ def measure_start() -> dict[str, float]:
 
 
 def measure_list() -> dict[str, float]:
-    """The list of topics, asked of the talker itself and of the daemon."""
+    """Measure the list of topics, asked of the talker itself and of the daemon."""
     alone = seconds([*ROS2, "topic", "list", "--no-daemon"])
     subprocess.run([*ROS2, "daemon", "start"], env=ENVIRONMENT, stdout=subprocess.DEVNULL, check=True)
     return {

@@ -20,7 +20,7 @@ def run() -> dict[str, float | str]:
 
 
 def measure_start() -> dict[str, float | str]:
-    """The demonstration with the studio but no page: until the robot moves, and until all has ended."""
+    """Measure the demonstration with the studio but no page: until the robot moves, and until all has ended."""
     command = [sys.executable, "-m", "daidalos.cli.daidalos", "demo", "--no-browser"]
     begun = time.perf_counter()
     process = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -67,7 +67,7 @@ def measure_log(name: str) -> dict[str, float | str]:
 
 
 def measure_parts() -> dict[str, float | str]:
-    """The parts of SLAM on a room of 8 m x 6 m, seen by 820 beams from ten places."""
+    """Measure the parts of SLAM on a room of 8 m x 6 m, seen by 820 beams from ten places."""
     poses = np.array([[-2.0 + 0.3 * k, 0.2 * k - 1.0, 0.1 * k] for k in range(10)])
     clouds = [to_cloud(room(pose, k), 20.0) for k, pose in enumerate(poses)]
     scan, pose = room(np.array([0.5, 0.3, 0.8]), 99), np.array([0.5, 0.3, 0.8])
@@ -94,7 +94,7 @@ def prepare(clouds: list[Cloud], poses: np.ndarray, window: Window) -> object:
 
 
 def measure_online() -> dict[str, float | str]:
-    """A robot with 820 beams at 15 Hz on a round through the room, as in the demo."""
+    """Measure a robot with 820 beams at 15 Hz on a round through the room, as in the demo."""
     steps = 15 * 60
     angle = np.linspace(0.0, 6.0 * np.pi, steps)
     poses = np.stack([2.5 * np.cos(angle), 1.8 * np.sin(angle), angle + np.pi / 2], axis=1)
@@ -135,7 +135,7 @@ def slam_frame(true: np.ndarray, odometry: np.ndarray) -> np.ndarray:
 
 
 def room(pose: np.ndarray, seed: int, beams: int = 820) -> LaserScanData:
-    """A scan of a rectangular room with a pillar, in closed form."""
+    """Return a scan of a rectangular room with a pillar, in closed form."""
     field = np.deg2rad(270.0)
     increment = field / (beams - 1)
     angles = pose[2] - field / 2 + increment * np.arange(beams)

@@ -143,7 +143,7 @@ def measure_barn(worlds: range) -> dict[str, float | str]:
 
 
 def rooms(height: int, width: int, boxes: int | None = None, *, inflated: bool = True) -> Costmap:
-    """A walled hall with random boxes at 5 cm."""
+    """Return a walled hall with random boxes at 5 cm."""
     generator = np.random.default_rng(1)
     costs = np.zeros((height, width), dtype=np.uint8)
     costs[0] = costs[-1] = 254

@@ -88,7 +88,7 @@ class _Handle:
 
 @contextmanager
 def _connected(names: Sequence[str], mode: str) -> Iterator[tuple[_Source, subprocess.Popen[str]]]:
-    """A server with a client in a process of its own, subscribed to everything."""
+    """Run a server with a client in a process of its own, subscribed to everything."""
     source = _Source(names)
     with StudioServer(source, port=0) as server:
         client = subprocess.Popen(
@@ -103,7 +103,7 @@ def _connected(names: Sequence[str], mode: str) -> Iterator[tuple[_Source, subpr
 
 
 def measure_streams() -> dict[str, float | str]:
-    """A robot's usual load: bytes, latency from publishing to the client, and the server's share of a core."""
+    """Measure a robot's usual load: bytes, latency from publishing to the client, and the server's share of a core."""
     with _connected(list(STREAMS), "read") as (source, client):
         cpu, begun = time.process_time(), time.perf_counter()
         threads = [
@@ -159,7 +159,7 @@ def measure_small() -> dict[str, float | str]:
 
 
 def measure_slow() -> dict[str, float | str]:
-    """The memory that a client costs which reads nothing while messages of 1 MB come."""
+    """Measure the memory that a client costs which reads nothing while messages of 1 MB come."""
     with _connected(["/big"], "deaf") as (source, _):
         process = psutil.Process()
         before = process.memory_info().rss
@@ -178,7 +178,7 @@ def measure_slow() -> dict[str, float | str]:
 
 
 def measure_page() -> dict[str, float | str]:
-    """The size of the built page."""
+    """Measure the size of the built page."""
     scripts = [path for path in STATIC.rglob("*") if path.suffix in {".js", ".css", ".html"}]
     if not scripts:
         return {"studio.page_kB": "not built"}

@@ -100,7 +100,7 @@ def measure_messages() -> dict[str, float | str]:
 
 
 def measure_waiting() -> dict[str, float | str]:
-    """How long after the transform came does the one who waits go on, and what does waiting cost."""
+    """Measure how long after the transform a waiting caller goes on, and what waiting costs."""
     buffer = Buffer()
     delays = []
     for step in range(1, 31):

@@ -23,7 +23,7 @@ from daidalos.lockstep.scheduler import Scheduler
 _REAL_WAIT_S = 0.05
 """Real time [s] that a peer in another process gets before the stepped time goes on."""
 
-_PATIENCE_S = 1.0
+_MAX_REAL_WAIT_S = 1.0
 """Real time [s] for which a run waits for other processes altogether, counted from when one last answered."""
 
 _POLL_NS = 10_000_000
@@ -45,7 +45,7 @@ class Outside:
         self._scheduler = scheduler
         self._named: set[tuple[str, int]] = set()
         self._select = select.select
-        self._patience_s = _PATIENCE_S
+        self._real_wait_left_s = _MAX_REAL_WAIT_S
 
     def install(self) -> None:
         """Replace what waits for sockets and files, and name what only the system's time drives."""
@@ -125,9 +125,9 @@ class Outside:
 
     def _wait_really(self, look: Callable[[float], Any]) -> Any:
         """Give other processes a moment."""
-        moment = min(_REAL_WAIT_S, max(self._patience_s, 0.0))
+        moment = min(_REAL_WAIT_S, max(self._real_wait_left_s, 0.0))
         found = look(moment)
-        self._patience_s = _PATIENCE_S if any(found) else self._patience_s - moment
+        self._real_wait_left_s = _MAX_REAL_WAIT_S if any(found) else self._real_wait_left_s - moment
         return found
 
     def _named_only(

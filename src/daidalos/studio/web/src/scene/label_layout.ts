@@ -10,7 +10,7 @@ export interface Anchor {
 
 /** Between a point and its label, in pixels. */
 const GAP = 6;
-const MOST_STEPS = 16;
+const MAX_STEPS = 16;
 
 interface Place {
   left: number;
@@ -45,7 +45,7 @@ function placesAround(width: number, height: number): Place[] {
   const [right, left] = [GAP, -GAP - width];
   const places: Place[] = [0, -1, 1].flatMap((row) => [{ left: right, top: (row - 0.5) * height }]);
   places.push(...[0, -1, 1].map((row) => ({ left, top: (row - 0.5) * height })));
-  for (let row = 2; row <= MOST_STEPS; row++) {
+  for (let row = 2; row <= MAX_STEPS; row++) {
     places.push({ left: right, top: (row - 0.5) * height }, { left: right, top: (-row - 0.5) * height });
     places.push({ left, top: (row - 0.5) * height }, { left, top: (-row - 0.5) * height });
   }
