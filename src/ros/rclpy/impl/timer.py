@@ -85,6 +85,17 @@ class TimerHandle(ReadyNotifier, Destroyable):
             raise TimerCancelledError("Timer has been canceled")
         return called
 
+    def call_timer_with_info(self) -> dict[str, int]:
+        """Record a call as `call_timer` does; return its times by name [ns].
+
+        Raises
+        ------
+        TimerCancelledError
+            When the timer is cancelled.
+        """
+        expected, actual = self.call_timer()
+        return {"expected_call_time": expected, "actual_call_time": actual}
+
     def call_if_due(self) -> tuple[int, int] | None:
         """Record a call as `call_timer` does; return None when none is due or the timer is cancelled or destroyed."""
         return self._call(early=False)
