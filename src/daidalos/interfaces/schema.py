@@ -27,7 +27,7 @@ def message_schema(name: str, library: Library) -> str:
         package, _, short = other.split("/")
         texts.append(f"{_SEPARATOR}\nMSG: {package}/{short}\n{_text(other, library)}")
         pending += _nested(other, library)
-    return "\n".join(text.rstrip("\n") for text in texts) + "\n"
+    return "\n\n".join(text.rstrip("\n") for text in texts) + "\n"  # a blank line, as rosbag2 writes it
 
 
 def _nested(name: str, library: Library) -> list[str]:

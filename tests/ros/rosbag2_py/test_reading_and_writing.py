@@ -244,7 +244,7 @@ def test_what_there_is():
     assert rosbag2_py.get_registered_compressors() == {"zstd"}
     assert rosbag2_py.get_registered_serializers() == {"cdr_converter"}
     found = rosbag2_py.LocalMessageDefinitionSource().get_full_text("geometry_msgs/msg/Twist")
-    assert "MSG: geometry_msgs/Vector3" in found.encoded_message_definition
+    assert f"\n\n{80 * '='}\nMSG: geometry_msgs/Vector3\n" in found.encoded_message_definition
     assert rosbag2_py.LocalMessageDefinitionSource().get_full_text("no/msg/Thing").encoded_message_definition == ""
     assert all(hasattr(rosbag2_py, name) for name in rosbag2_py.__all__)
 
