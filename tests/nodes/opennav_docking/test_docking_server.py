@@ -207,7 +207,7 @@ def test_a_late_transform_stops_the_robot(stage: SetStage) -> None:
     bench.stage.robot = None
     status, result = bench.end(handle)
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Result.UNKNOWN)
-    assert "longer than 0.5 s" in result.error_msg
+    assert "longer than 1 s" in result.error_msg
 
 
 def test_a_charger_that_does_not_charge_and_one_that_does(stage: SetStage) -> None:

@@ -87,7 +87,7 @@ class DockingServerParameters(Parameters):
     navigator_bt_xml: str = parameter("", "Behaviour tree by which it drives there.", read_only=True)
     enable_stamped_cmd_vel: bool = parameter(False, "Whether cmd_vel is stamped.", read_only=True)
     data_timeout: float = parameter(
-        0.5, "Age of the robot's transform or the costmap from which on it stops.", unit="s", above=0.0
+        1.0, "Age of the robot's transform or the costmap from which on it stops.", unit="s", above=0.0
     )
     dock_plugins: tuple[str, ...] = parameter(
         ("simple_charging_dock",), "Names of the types of docks.", not_empty=True, unique=True, read_only=True
