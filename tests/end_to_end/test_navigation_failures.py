@@ -130,3 +130,10 @@ def test_a_server_that_is_killed_comes_back(drive: Drive, nodes: Nodes, service:
 def test_a_navigator_that_is_killed_stops_the_robot(drive: Drive, nodes: Nodes) -> None:
     nodes["bt_navigator"].kill()
     assert drive.distance_in(4.0) < BLIND_M
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+@pytest.mark.parametrize("speed", [0.6, 1.2])
+def test_somebody_who_crosses_the_way_is_not_touched(drive: Drive, world: World, speed: float) -> None:
+    world.walk("visitor", [(1.4, -1.5), (1.4, 1.5)], speed=speed, loop=False)
+    assert drive.end() == ""

@@ -1,0 +1,116 @@
+"""Moving obstacle layer: where people, carts and other robots will be soon."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from daidalos.common.arrays import Array
+from daidalos.common.parameters import Parameters, parameter, per_name
+from daidalos.mapping.scan import LaserScanData
+from daidalos.navigation.contracts import Input, Layer, NavigationContext
+from daidalos.navigation.costmap.costmap import LETHAL_OBSTACLE, Bounds, Costmap, Window
+from daidalos.navigation.costmap.observation import Observation
+from daidalos.navigation.tracking import MovingObstacleTracker, Track
+
+
+@dataclass(frozen=True)
+class TrackedScan(Parameters):
+    """Parameters of one lidar."""
+
+    topic: str = parameter("", "Topic of the lidar; empty for the source's name.", read_only=True)
+
+
+@dataclass(frozen=True)
+class MovingObstacleLayerParameters(Parameters):
+    """Parameters of the layer."""
+
+    enabled: bool = parameter(True, "Whether the layer is used.")
+    observation_sources: str = parameter("scan", "Names of the lidars, with spaces between them.", read_only=True)
+    sources: Mapping[str, TrackedScan] = per_name(TrackedScan, by="observation_sources", at="")
+    prediction_time: float = parameter(1.5, "How far ahead moving obstacles are predicted.", unit="s", minimum=0.0)
+    min_speed: float = parameter(0.25, "Speed above which an obstacle moves.", unit="m/s", minimum=0.0, read_only=True)
+    max_width: float = parameter(
+        1.0, "Width up to which something is an obstacle of its own.", unit="m", above=0.0, read_only=True
+    )
+    margin: float = parameter(0.1, "Width that is added to each side of a moving obstacle.", unit="m", minimum=0.0)
+
+
+class MovingObstacleLayer(Layer):
+    """Layer of the ground that tracked obstacles will pass soon, at constant velocity; lethal.
+
+    The layer of the obstacles themselves stands below it, inflation above.
+    """
+
+    names = ("daidalos::MovingObstacleLayer",)
+    clearable = True
+    Parameters = MovingObstacleLayerParameters
+    parameters: MovingObstacleLayerParameters
+
+    def __init__(
+        self, parameters: MovingObstacleLayerParameters | None = None, context: NavigationContext | None = None
+    ) -> None:
+        super().__init__(parameters, context)
+        p = self.parameters
+        self._trackers = {name: MovingObstacleTracker(p.max_width, p.min_speed) for name in p.sources}
+        self._strips: list[tuple[Array, Array, float]] = []
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """Implement `Layer.inputs`."""
+        return tuple(
+            Input(source.topic or name, LaserScanData, partial(self.add_scan, name))
+            for name, source in self.parameters.sources.items()
+        )
+
+    def add_scan(self, source: str, scan: LaserScanData, base_pose: Array, stamp: float) -> None:
+        """Take a scan of one of the lidars; see `Observation.from_scan`."""
+        self._trackers[source].update(Observation.from_scan(scan, base_pose, stamp))
+
+    def moving(self, now: float) -> list[Track]:
+        """Return what moves at a time [s]."""
+        return [track for tracker in self._trackers.values() for track in tracker.moving(now)]
+
+    def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
+        """Include where obstacles were predicted before, and where they are now."""
+        p = self.parameters
+        for strip in self._strips:
+            bounds = bounds.including(_bounds(*strip))
+        self._strips = []
+        for track in self.moving(now):
+            begin = track.position + track.velocity * (now - track.seen)
+            end = begin + track.velocity * p.prediction_time
+            self._strips.append((begin, end, track.radius + p.margin))
+            bounds = bounds.including(_bounds(*self._strips[-1]))
+        return bounds
+
+    def update_costs(self, costmap: Costmap, window: Window) -> None:
+        """Mark the strips."""
+        for begin, end, radius in self._strips:
+            part = costmap.window_of(_bounds(begin, end, radius))
+            if part.empty:
+                continue
+            rows, columns = part.slices
+            y, x = np.mgrid[rows, columns]
+            cells = np.stack([x, y], axis=-1)
+            points = costmap.origin + (cells + 0.5) * costmap.resolution
+            near = _distances(points, begin, end) <= radius
+            costmap.costs[part.slices][near] = LETHAL_OBSTACLE
+
+    def clear(self, keep: Window, *, inside: bool) -> None:
+        """Forget all tracks."""
+        for tracker in self._trackers.values():
+            tracker.reset()
+
+
+def _bounds(begin: Array, end: Array, radius: float) -> Bounds:
+    return Bounds().including_points(np.stack([begin, end])).expanded(radius)
+
+
+def _distances(points: Array, begin: Array, end: Array) -> Array:
+    """Return the distance [m] of points (..., 2) to a segment."""
+    way = end - begin
+    along = ((points - begin) @ way) / max(float(way @ way), 1e-12)
+    nearest = begin + np.clip(along, 0.0, 1.0)[..., None] * way
+    return np.asarray(np.linalg.norm(points - nearest, axis=-1))
