@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from daidalos.common.errors import UserError
@@ -31,6 +32,9 @@ T = TypeVar("T")
 
 BUILT_IN = "built in"
 """Origin of the extensions that are part of this package."""
+
+_parsing = Lock()
+"""Held while Python's parser makes a tree: in CPython 3.11 two threads that do so at once raise `SystemError`."""
 
 _CLASS_PATH = r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)+"
 
@@ -291,7 +295,9 @@ def _classes_in(package: str, attribute: str) -> Iterator[Extension]:
             text = path.read_text(encoding="utf-8")
             if f"    {attribute} = (" not in text and f"    {attribute}: ClassVar[" not in text:
                 continue
-            for node in ast.parse(text, str(path)).body:
+            with _parsing:
+                body = ast.parse(text, str(path)).body
+            for node in body:
                 names = _names_of(node, attribute) if isinstance(node, ast.ClassDef) else ()
                 if isinstance(node, ast.ClassDef) and names:
                     description = (ast.get_docstring(node) or "").partition("\n")[0].removesuffix(".")
