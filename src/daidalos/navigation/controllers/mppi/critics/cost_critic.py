@@ -41,6 +41,25 @@ class CostCriticParameters(Parameters):
     trajectory_point_step: int = parameter(2, "Step between the poses of a trajectory that are checked.", minimum=1)
 
 
+def contact_rule(scene: Scene, consider_footprint: bool) -> tuple[Array, int]:
+    """Return the outline to check for contact, and the cost of a cell from which on its centre is in contact.
+
+    A robot that is in contact already, by noise or by an obstacle that came, may drive away: only the obstacle
+    itself counts for it.
+
+    Parameters
+    ----------
+    scene : Scene
+        Costmap, footprint and pose of the robot.
+    consider_footprint : bool
+        Whether the footprint is checked instead of the robot's centre.
+    """
+    if FootprintCollisionChecker(scene.control.costmap, scene.footprint).in_collision(scene.control.pose):
+        return NO_OUTLINE, LETHAL_OBSTACLE
+    is_outline_checked = consider_footprint and not scene.footprint.circular
+    return scene.footprint.polygon if is_outline_checked else NO_OUTLINE, INSCRIBED_INFLATED_OBSTACLE
+
+
 class CostCritic(Critic):
     """Critic of the mean cost of the cells that the robot's centre crosses, relative to a lethal cost.
 
@@ -74,10 +93,8 @@ class CostCritic(Critic):
         tolerated = 0
         if scene.control.distance_to_goal < p.near_goal_distance:
             tolerated = costmap.cost_at(float(scene.control.goal[0]), float(scene.control.goal[1]))
-        outline = scene.footprint.polygon if p.consider_footprint and not scene.footprint.circular else NO_OUTLINE
-        price, contact = self._price - self._price[tolerated], INSCRIBED_INFLATED_OBSTACLE
-        if FootprintCollisionChecker(costmap, scene.footprint).in_collision(scene.control.pose):
-            outline, contact = NO_OUTLINE, LETHAL_OBSTACLE
+        price = self._price - self._price[tolerated]
+        outline, contact = contact_rule(scene, p.consider_footprint)
         cost_of_cells(
             rollouts.x,
             rollouts.y,

@@ -10,7 +10,7 @@ from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import Critic, Scene
-from daidalos.navigation.controllers.mppi.critics.cost_critic import NO_OUTLINE
+from daidalos.navigation.controllers.mppi.critics.cost_critic import contact_rule
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 from daidalos.navigation.costmap.costmap import (
     INSCRIBED_INFLATED_OBSTACLE,
@@ -19,7 +19,7 @@ from daidalos.navigation.costmap.costmap import (
     NO_INFORMATION,
     Costs,
 )
-from daidalos.navigation.costmap.footprint import FootprintCollisionChecker, outline_cost
+from daidalos.navigation.costmap.footprint import outline_cost
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,7 @@ class ObstaclesCritic(Critic):
         distances = np.full(256, p.inflation_radius)
         distances[1 : MAX_NON_OBSTACLE + 1] = np.log(MAX_NON_OBSTACLE / costs) / p.cost_scaling_factor
         distances[INSCRIBED_INFLATED_OBSTACLE:NO_INFORMATION] = 0.0
-        outline = scene.footprint.polygon if p.consider_footprint and not scene.footprint.circular else NO_OUTLINE
-        contact = INSCRIBED_INFLATED_OBSTACLE
-        if FootprintCollisionChecker(costmap, scene.footprint).in_collision(scene.control.pose):
-            outline, contact = NO_OUTLINE, LETHAL_OBSTACLE
+        outline, contact = contact_rule(scene, p.consider_footprint)
         repulsion = 0.0 if scene.control.distance_to_goal < p.near_goal_distance else p.repulsion_weight
         added = cost_of_distances(
             rollouts.x,
