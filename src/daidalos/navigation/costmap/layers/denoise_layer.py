@@ -47,7 +47,7 @@ class DenoiseLayer(Layer):
         self._is_outdated = True
 
     def match_size(self, costmap: Costmap) -> None:
-        """Note the size of a cell."""
+        """Set the size of a cell."""
         self._resolution = costmap.resolution
 
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:

@@ -23,7 +23,9 @@ class CollisionMonitorParameters(Parameters):
     rate: float = parameter(1.0, "Checks per second.", unit="Hz", above=0.0)
     max_cost: float = parameter(253.0, "Cost from which on an edge is blocked.", above=0.0, maximum=254.0)
     max_collision_dist: float = parameter(5.0, "How far ahead it looks; 0 or less: to the end.", unit="m")
-    check_resolution: int = parameter(1, "1 looks at every cell, 2 at every other.", unit="cells", minimum=1)
+    check_resolution: int = parameter(
+        1, "Looks at every cell where 1, at every other where 2.", unit="cells", minimum=1
+    )
     reroute_on_collision: bool = parameter(True, "Whether another route is searched, rather than given up.")
 
 

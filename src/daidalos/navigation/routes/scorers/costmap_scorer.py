@@ -23,7 +23,9 @@ class CostmapScorerParameters(Parameters):
     use_maximum: bool = parameter(True, "Whether the largest cost counts, rather than the mean.")
     invalid_on_collision: bool = parameter(True, "Whether blocked edges are closed.")
     invalid_off_map: bool = parameter(True, "Whether edges that leave the costmap are closed.")
-    check_resolution: int = parameter(2, "1 looks at every cell, 2 at every other.", unit="cells", minimum=1)
+    check_resolution: int = parameter(
+        2, "Looks at every cell where 1, at every other where 2.", unit="cells", minimum=1
+    )
 
 
 class CostmapScorer(EdgeScorer):
