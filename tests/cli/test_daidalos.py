@@ -81,3 +81,11 @@ def test_extensions_are_printed_as_json(capsys: pytest.CaptureFixture[str]) -> N
 def test_an_unknown_kind_is_named_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["extensions", "senser"]) == 2
     assert capsys.readouterr().err == "daidalos extensions: there is no kind 'senser'; did you mean 'sensor'?\n"
+
+
+def test_a_kind_that_is_like_no_other_is_answered_with_where_they_are_listed(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["extensions", "zzz"]) == 2
+    expected = "daidalos extensions: there is no kind 'zzz'; 'daidalos extensions' lists all kinds\n"
+    assert capsys.readouterr().err == expected

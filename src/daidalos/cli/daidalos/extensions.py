@@ -44,7 +44,8 @@ class ExtensionsVerb:
             return 0
         name = _singular(args.kind.replace("-", "_"), known)
         if name not in known:
-            print(f"daidalos extensions: there is no kind '{args.kind}'{hint(name, known)}", file=sys.stderr)
+            help_text = hint(name, known) or "; 'daidalos extensions' lists all kinds"
+            print(f"daidalos extensions: there is no kind '{args.kind}'{help_text}", file=sys.stderr)
             return 2
         extensions = listing(known[name])
         print(_as_json(known, {name: extensions})) if args.json else _print_extensions(known[name], extensions)
