@@ -9,11 +9,21 @@ from daidalos.navigation.controllers.mppi_controller import CriticSwitch, MppiCo
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
 from daidalos.navigation.controllers.rotation_shim_controller import RotationShimController
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
+from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
+from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 
 
-@pytest.mark.parametrize("name", ["nav2_navfn_planner::NavfnPlanner", "nav2_navfn_planner/NavfnPlanner"])
-def test_both_spellings_are_found(name):
-    assert find(extensions.PLANNERS, name) is NavfnPlanner
+@pytest.mark.parametrize("separator", ["::", "/"])
+@pytest.mark.parametrize(
+    ("package", "planner"),
+    [
+        ("nav2_navfn_planner", NavfnPlanner),
+        ("nav2_smac_planner", SmacPlanner2D),
+        ("nav2_theta_star_planner", ThetaStarPlanner),
+    ],
+)
+def test_both_spellings_are_found(package, planner, separator):
+    assert find(extensions.PLANNERS, f"{package}{separator}{planner.__name__}") is planner
 
 
 def test_critics_need_no_namespace():

@@ -137,8 +137,20 @@ class NavigationExtension(ABC):  # noqa: B024 (each contract has its own methods
         self.parameters = parameters
 
 
+def _never() -> bool:
+    return False
+
+
 class GlobalPlanner(NavigationExtension):
-    """Planner of a path over a costmap."""
+    """Planner of a path over a costmap.
+
+    Attributes
+    ----------
+    is_cancelled : callable
+        Returns whether the plan is no longer wanted; long searches call it now and then and raise `PlanningCancelled`.
+    """
+
+    is_cancelled: Callable[[], bool] = staticmethod(_never)
 
     @abstractmethod
     def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:

@@ -50,6 +50,16 @@ class NoPath(PlannerError):
     code = "NO_VALID_PATH"
 
 
+class PlanningTimedOut(PlannerError):
+    """Search for a path that took longer than allowed."""
+
+    code = "TIMEOUT"
+
+
+class PlanningCancelled(PlannerError):
+    """Search for a path that is no longer wanted."""
+
+
 class ControllerError(NavigationError):
     """Failure to follow the path; the message gives the reason."""
 

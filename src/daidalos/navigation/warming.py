@@ -21,6 +21,8 @@ from daidalos.navigation.costmap.layers.static_layer import StaticLayer
 from daidalos.navigation.costmap.layers.voxel_layer import VoxelLayer
 from daidalos.navigation.costmap.observation import Observation
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
+from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
+from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 from daidalos.navigation.smoothers.simple_smoother import SimpleSmoother
 
 OUTLINE = Footprint.of_corners(np.array([[0.2, 0.2], [0.2, -0.2], [-0.2, -0.2], [-0.2, 0.2]]))
@@ -62,6 +64,8 @@ def _plan(costmap: Costmap) -> None:
     planner.create_plan(costmap, walled, goal)
     planner.create_plan(costmap, start, walled)
     SimpleSmoother().smooth(path, costmap)
+    for kind in (ThetaStarPlanner, SmacPlanner2D):
+        kind().create_plan(costmap, start, goal)
 
 
 def _control(costmap: Costmap) -> None:

@@ -16,16 +16,10 @@ from daidalos.navigation.costmap.costmap import (
     NO_INFORMATION,
     Costmap,
 )
-from daidalos.navigation.errors import GoalOccupied, GoalOutsideMap, NoPath, StartOccupied, StartOutsideMap
+from daidalos.navigation.errors import GoalOccupied, NoPath
 from daidalos.navigation.paths import with_headings
-from daidalos.navigation.planners.navigation_function import (
-    descend,
-    nearest_passable_cell,
-    nearest_reached,
-    propagate,
-)
-
-Cell = tuple[int, int]
+from daidalos.navigation.planners.navigation_function import descend, nearest_reached, propagate
+from daidalos.navigation.planners.terminals import Cell, goal_cell, start_cell, way_out, words
 
 COST_FACTOR = 0.8 / 50.0
 """Cost of a step over a cell is 1 + this times the cell's cost, in units of a step over free ground.
@@ -36,9 +30,6 @@ effect.
 
 OBSTACLE_SKIN = 0.1
 """Assumed depth [m] of obstacles behind the surface that sensors see; goals there are rejected."""
-
-ESCAPE_RADIUS = 0.5
-"""Maximum distance [m] of a free cell from a lethal start; localization is rarely worse."""
 
 
 @dataclass(frozen=True)
@@ -71,15 +62,10 @@ class NavfnPlanner(GlobalPlanner):
 
     def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:
         """Plan a path; see `GlobalPlanner.create_plan`."""
-        first = _cell(costmap, start)
-        last = _cell(costmap, goal)
-        if first is None:
-            raise StartOutsideMap(f"the robot at {_words(start)} is outside of the map, {_extent(costmap)}")
-        if last is None:
-            raise GoalOutsideMap(f"the goal {_words(goal)} is outside of the map, {_extent(costmap)}")
+        first, last = start_cell(costmap, start), goal_cell(costmap, goal)
         self._refuse_obstacles(costmap, last, goal)
         step = self._step_costs()
-        entry = _way_out(costmap, first, step, start)
+        entry = way_out(costmap, first, step, start)
         potential = self._potential(costmap, step, entry, last)
         reached = last if np.isfinite(potential[last[1], last[0]]) else self._near(costmap, potential, last, goal)
         end = goal[:2] if reached == last else np.array(costmap.map_to_world(*reached))
@@ -95,9 +81,9 @@ class NavfnPlanner(GlobalPlanner):
     def _refuse_obstacles(self, costmap: Costmap, last: Cell, goal: Array) -> None:
         cost = int(costmap.costs[last[1], last[0]])
         if _touches_obstacle(costmap, last):
-            raise GoalOccupied(f"the goal {_words(goal)} is in an obstacle, or within {OBSTACLE_SKIN} m of one")
+            raise GoalOccupied(f"the goal {words(goal)} is in an obstacle, or within {OBSTACLE_SKIN} m of one")
         if cost == NO_INFORMATION and not self.parameters.allow_unknown:
-            raise GoalOccupied(f"the goal {_words(goal)} is in unknown space and allow_unknown is false")
+            raise GoalOccupied(f"the goal {words(goal)} is in unknown space and allow_unknown is false")
 
     def _potential(self, costmap: Costmap, step: NDArray[np.float32], entry: Cell, last: Cell) -> NDArray[np.float32]:
         """Compute the navigation function from the start, at least up to the goal if it is reachable.
@@ -131,15 +117,8 @@ class NavfnPlanner(GlobalPlanner):
             return column, row
         within = f" and nothing within {tolerance} m of it can be reached" if tolerance > 0.0 else ""
         if costmap.costs[last[1], last[0]] == INSCRIBED_INFLATED_OBSTACLE:
-            raise GoalOccupied(f"the robot does not fit at the goal {_words(goal)}: an obstacle is too near{within}")
-        raise NoPath(f"no way leads to the goal {_words(goal)}: obstacles cut it off{within}")
-
-
-def _cell(costmap: Costmap, pose: Array) -> Cell | None:
-    if not np.isfinite(pose).all():
-        return None
-    column, row = costmap.world_to_map(float(pose[0]), float(pose[1]))
-    return (column, row) if costmap.holds(column, row) else None
+            raise GoalOccupied(f"the robot does not fit at the goal {words(goal)}: an obstacle is too near{within}")
+        raise NoPath(f"no way leads to the goal {words(goal)}: obstacles cut it off{within}")
 
 
 def _touches_obstacle(costmap: Costmap, cell: Cell) -> bool:
@@ -149,24 +128,3 @@ def _touches_obstacle(costmap: Costmap, cell: Cell) -> bool:
     around = costmap.costs[below : row + reach + 1, left : column + reach + 1]
     rows, columns = np.nonzero(around == LETHAL_OBSTACLE)
     return bool(np.any((rows + below - row) ** 2 + (columns + left - column) ** 2 <= reach**2))
-
-
-def _way_out(costmap: Costmap, first: Cell, step: NDArray[np.float32], start: Array) -> Cell:
-    """Return the start of the wavefront: the robot's cell, or the nearest cell outside of inflation."""
-    if np.isfinite(step[costmap.costs[first[1], first[0]]]):
-        return first
-    reach = ESCAPE_RADIUS / costmap.resolution
-    column, row = nearest_passable_cell(costmap.costs, step, first[0], first[1], reach)
-    if column < 0:
-        raise StartOccupied(f"the robot at {_words(start)} is enclosed by obstacles and no free cell is near")
-    return column, row
-
-
-def _words(pose: Array) -> str:
-    return f"({float(pose[0]):.2f}, {float(pose[1]):.2f})"
-
-
-def _extent(costmap: Costmap) -> str:
-    x, y = (float(value) for value in costmap.origin)
-    width, height = costmap.width * costmap.resolution, costmap.height * costmap.resolution
-    return f"which covers x {x:.2f} to {x + width:.2f} m, y {y:.2f} to {y + height:.2f} m"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -16,7 +17,7 @@ from daidalos.common.pose2 import compose
 from daidalos.navigation.contracts import GlobalPlanner
 from daidalos.navigation.costmap.costmap import NO_INFORMATION
 from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
-from daidalos.navigation.errors import NavigationError
+from daidalos.navigation.errors import NavigationError, PlanningCancelled
 from daidalos.navigation.extensions import PLANNERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import path_message, pose2_of, pose2_of_transform
@@ -94,7 +95,11 @@ class PlannerServer(ManagedNode):
         if goal_handle.is_cancel_requested:
             goal_handle.canceled()
             return result
-        path = self._plan(goal_handle.request)
+        try:
+            path = self._plan(goal_handle.request, lambda: goal_handle.is_cancel_requested)
+        except PlanningCancelled:
+            goal_handle.canceled()
+            return result
         result.path = path_message(path, self._costmap.global_frame, self.get_clock().now().to_msg())
         took_ns = time.monotonic_ns() - begun
         took = time_message(took_ns)
@@ -111,11 +116,12 @@ class PlannerServer(ManagedNode):
                 f"planning took {took:.3g} s, longer than expected_planner_frequency {frequency:g} Hz allows"
             )
 
-    def _plan(self, request: Any) -> Any:
+    def _plan(self, request: Any, is_cancelled: Callable[[], bool]) -> Any:
         name = request.planner_id or next(iter(self._planners))
         planner = self._planners.get(name)
         if planner is None:
             raise UnknownPlanner(f"there is no planner '{name}'; there are: {', '.join(self._planners)}")
+        planner.is_cancelled = is_cancelled
         start = self._in_global_frame(request.start) if request.use_start else self._costmap.robot_pose()
         if start is None:
             raise TransformFailed(self._costmap.pose_problem)
