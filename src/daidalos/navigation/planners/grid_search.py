@@ -218,7 +218,7 @@ def line_price(costs: Costs, price: Prices, x0: float, y0: float, x1: float, y1:
         else:
             row += step_y
             next_y += per_y
-    return length * (total + price[costs[last_row, last_column]] * (1.0 - here))
+    return float(length * (total + price[costs[last_row, last_column]] * (1.0 - here)))
 
 
 @compiled

@@ -67,8 +67,14 @@ class SmacPlanner2D(GlobalPlanner):
             raise GoalOccupied(f"the robot does not fit at the goal {words(goal)}: its cell is not passable")
         entry = way_out(costmap, first, price, start)
         search = GridSearch(costmap, price, entry, last, reach=reach, on_approach=p.max_on_approach_iterations)
-        limits = {"max_iterations": p.max_iterations, "max_planning_time": p.max_planning_time}
-        if run_search(search.advance, p.terminal_checking_interval, self.is_cancelled, **limits) != FOUND:
+        state = run_search(
+            search.advance,
+            p.terminal_checking_interval,
+            self.is_cancelled,
+            max_iterations=p.max_iterations,
+            max_planning_time=p.max_planning_time,
+        )
+        if state != FOUND:
             kind = NoPath if is_free else GoalOccupied
             raise kind(f"no way leads to the goal {words(goal)} or within {p.tolerance} m of it: obstacles cut it off")
         cells = search.cells()

@@ -13,7 +13,7 @@ from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.errors import GoalOccupied, NoPath
 from daidalos.navigation.paths import with_headings
 from daidalos.navigation.planners.grid_search import GridSearch, line_price, spaced, tightened
-from daidalos.navigation.planners.search import FOUND, prices, run_search
+from daidalos.navigation.planners.search import FOUND, Prices, prices, run_search
 from daidalos.navigation.planners.terminals import goal_cell, start_cell, way_out, words
 
 
@@ -64,7 +64,7 @@ class ThetaStarPlanner(GlobalPlanner):
         return with_headings(spaced(points, costmap.resolution), final_heading=final, initial_heading=float(start[2]))
 
 
-def _with_ends(costmap: Costmap, price: Array, corners: Array, begin: Array | None, end: Array) -> Array:
+def _with_ends(costmap: Costmap, price: Prices, corners: Array, begin: Array | None, end: Array) -> Array:
     """Return corners (n, 2) from and to points beside the centres of the first and the last cell.
 
     An end takes the place of the centre where the next corner is in its sight, and is put before or after it otherwise.
