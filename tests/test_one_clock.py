@@ -18,6 +18,7 @@ OTHER_CLOCKS = {
     "ClockType": {"STEADY_TIME", "SYSTEM_TIME"},
 }
 ALLOWED = {
+    "navigation/planners/search.py": "the computing time of a search, which max_planning_time limits",
     "nodes/asset_folders.py": "the age of a file",
     "nodes/daidalos_demo/_measuring.py": "the computing time of other processes",
     "nodes/daidalos_demo/_robot.py": "when to ask again whether other processes are up",
