@@ -15,6 +15,7 @@ from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import Element, parse_markup
 from daidalos.navigation.extensions import TREE_NODES
 from daidalos.navigation.trees.blackboard import Blackboard
+from daidalos.navigation.trees.conditions import CONDITIONS, Conditioned
 from daidalos.navigation.trees.errors import TreeError
 from daidalos.navigation.trees.node import Ports, TreeContext
 from daidalos.navigation.trees.services import Services
@@ -28,7 +29,7 @@ THROUGH_POSES_TREE = DEFAULT_TREE.with_name("navigate_through_poses_w_replanning
 """Default tree of `navigate_through_poses`."""
 
 _EXPLICIT = frozenset({"Action", "Condition", "Control", "Decorator"})
-_COMMENTARY = frozenset({"name", "ID", "_description", "_fullpath", "_uid"})
+_COMMENTARY = frozenset({"name", "ID", "_description", "_fullpath", "_uid", *CONDITIONS})
 
 
 class BehaviorTree:
@@ -94,9 +95,9 @@ class BehaviorTree:
         return self.root.status
 
     def tick(self) -> Status:
-        """Tick the tree once; `RUNNING` until it has succeeded or failed."""
+        """Tick the tree once; `RUNNING` until it has succeeded or failed. A tree that is skipped fails."""
         self.root.tick_once()
-        return self.root.status
+        return Status.FAILURE if self.root.status == Status.INVALID else self.root.status
 
     def halt(self) -> None:
         """Halt all running nodes."""
@@ -159,6 +160,12 @@ class _Builder:
         return self._node(tree.children[0], board, (*path, identifier))
 
     def _node(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
+        node = self._bare_node(element, board, path)
+        conditions = {name: text for name, text in element.attributes.items() if name in CONDITIONS}
+        return Conditioned(node, conditions, board, _place(element)) if conditions else node
+
+    def _bare_node(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
+        """Return a node without its conditions."""
         identifier = element.attributes.get("ID", "") if element.tag in _EXPLICIT else element.tag
         if identifier in ("SubTree", "SubTreePlus"):
             return self._inner_tree(element, board, path)

@@ -44,6 +44,11 @@ class Blackboard:
         board, own = self._owner(name)
         board._values[own] = value
 
+    def remove(self, name: str) -> None:
+        """Remove a value, if there is one."""
+        board, own = self._owner(name)
+        board._values.pop(own, None)
+
     def __contains__(self, name: str) -> bool:
         board, own = self._owner(name)
         return own in board._values

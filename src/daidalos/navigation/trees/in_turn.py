@@ -11,6 +11,8 @@ from daidalos.navigation.trees.node import Control
 class InTurn(Control):
     """Control node that ticks children in order, resuming the running one.
 
+    A child that is skipped (`INVALID` after its tick) is passed over; the node is skipped if all are.
+
     Attributes
     ----------
     goes_on_after : Status
@@ -18,12 +20,15 @@ class InTurn(Control):
         one, and otherwise as the child did.
     reactive : bool
         Class attribute: begin with the first child at every tick.
+    pauses : bool
+        Class attribute: run on to the next tick before each child but the first.
     remembers : bool
         Class attribute: begin with the child that ended the last run with another status.
     """
 
     goes_on_after: ClassVar[Status]
     reactive: ClassVar[bool] = False
+    pauses: ClassVar[bool] = False
     remembers: ClassVar[bool] = False
 
     def tick(self) -> Iterator[Any]:
@@ -34,11 +39,17 @@ class InTurn(Control):
         first = self.children.index(self.current_child) if self.current_child and not self.reactive else 0
         for child in self.children[first:]:
             yield from child.tick()
-            if child.status != self.goes_on_after:
+            if child.status not in (self.goes_on_after, Status.INVALID):
                 status = child.status
                 self.conclude(status, runs=child)
                 self.current_child = child
                 yield self
                 return
-        self.conclude(self.goes_on_after)
+            if self.pauses and child is not self.children[-1]:
+                self.current_child = self.children[self.children.index(child) + 1]
+                self.conclude(Status.RUNNING)
+                yield self
+                return
+        was_skipped = all(child.status == Status.INVALID for child in self.children)
+        self.conclude(Status.INVALID if was_skipped else self.goes_on_after)
         yield self

@@ -65,8 +65,12 @@ class Navigation:
         """Tick the tree; return its status, INVALID once the goal was cancelled or aborted and the tree halted."""
         if self.goal_handle.is_active and not self.goal_handle.is_cancel_requested:
             return self._tree.tick()
-        self._tree.halt()
+        self.halt()
         return Status.INVALID
+
+    def halt(self) -> None:
+        """Halt the tree."""
+        self._tree.halt()
 
     def replace_goal(self, goal_handle: Any, result: Any) -> None:
         """Continue the tree with another goal.

@@ -18,6 +18,7 @@ from daidalos.navigation.paths import path_length
 from daidalos.navigation.trees.action_node import RECOVERIES
 from daidalos.navigation.trees.behavior_tree import DEFAULT_TREE, THROUGH_POSES_TREE, BehaviorTree
 from daidalos.navigation.trees.blackboard import Blackboard
+from daidalos.navigation.trees.errors import TreeError
 from daidalos.nodes.conversions import path_array, pose2_of
 from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ManagedNode
@@ -180,9 +181,14 @@ class BtNavigator(ManagedNode):
     async def _run(self, navigation: Navigation, action: Any) -> Status:
         """Tick the tree until it ends or the goal is cancelled."""
         with Cycle(self, 1000.0 / self._settings.bt_loop_duration) as cycle:
-            while (status := navigation.tick()) == Status.RUNNING:
-                self._publish_feedback(navigation, action)
-                await cycle.next()
+            try:
+                while (status := navigation.tick()) == Status.RUNNING:
+                    self._publish_feedback(navigation, action)
+                    await cycle.next()
+            except TreeError as error:
+                self.get_logger().error(str(error))
+                navigation.halt()
+                return Status.FAILURE
         return status
 
     def _publish_feedback(self, navigation: Navigation, action: Any) -> None:

@@ -17,3 +17,10 @@ class ReactiveFallback(Fallback):
 
     names = ("ReactiveFallback",)
     reactive = True
+
+
+class AsyncFallback(Fallback):
+    """Fallback that ticks at most one child that fails in each tick."""
+
+    names = ("AsyncFallback",)
+    pauses = True

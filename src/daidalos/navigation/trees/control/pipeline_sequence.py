@@ -32,5 +32,6 @@ class PipelineSequence(Control):
                 self.conclude(Status.RUNNING)
                 yield self
                 return
-        self.conclude(Status.SUCCESS)
+        was_skipped = all(child.status == Status.INVALID for child in self.children)
+        self.conclude(Status.INVALID if was_skipped else Status.SUCCESS)
         yield self

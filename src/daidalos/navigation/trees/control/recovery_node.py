@@ -12,7 +12,7 @@ class RecoveryNode(Control):
     """Control node that ticks its second child after a failure of its first one, and retries.
 
     Each time that the first child fails, the second must succeed before the next try. Fails when the second
-    child fails, or when the first has failed after all retries.
+    child fails or is skipped, or when the first has failed after all retries.
     """
 
     names = ("RecoveryNode",)
@@ -43,6 +43,7 @@ class RecoveryNode(Control):
             ):
                 self.current_child = recovery
             else:
-                self.conclude(child.status)
+                was_skipped = child is recovery and child.status == Status.INVALID
+                self.conclude(Status.FAILURE if was_skipped else child.status)
                 break
         yield self

@@ -19,6 +19,13 @@ class ReactiveSequence(Sequence):
     reactive = True
 
 
+class AsyncSequence(Sequence):
+    """Sequence that ticks at most one child that succeeds in each tick."""
+
+    names = ("AsyncSequence",)
+    pauses = True
+
+
 class SequenceWithMemory(InTurn):
     """Control node that ticks children in order until one fails, and goes on with that one at the next tick."""
 

@@ -14,8 +14,9 @@ class ForceSuccess(Decorator):
     RESULT: ClassVar[Status] = Status.SUCCESS
 
     def update(self) -> Status:
-        """Replace every status except `RUNNING`."""
-        return Status.RUNNING if self.decorated.status == Status.RUNNING else self.RESULT
+        """Replace success and failure."""
+        status = self.decorated.status
+        return self.RESULT if status in (Status.SUCCESS, Status.FAILURE) else status
 
 
 class ForceFailure(ForceSuccess):

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from py_trees.common import Status
 
-from daidalos.navigation.trees.node import Decorator, Port
+from daidalos.navigation.trees.node import Decorator, Port, flag
 
 
 class _Again(Decorator):
@@ -54,6 +54,24 @@ class Repeat(_Again):
     AFTER = Status.SUCCESS
     NUMBER = "num_cycles"
     PORTS: ClassVar[dict[str, Port]] = {"num_cycles": Port(int)}
+
+
+class RunOnce(Decorator):
+    """Decorator that ticks its child until it has ended once; it is skipped afterwards, or returns the same status."""
+
+    names = ("RunOnce",)
+    PORTS: ClassVar[dict[str, Port]] = {"then_skip": Port(flag, True)}
+    _ended: Status | None = None
+
+    def tick(self) -> Iterator[Any]:
+        """Tick the child until it has ended."""
+        if self._ended is None:
+            yield from self.decorated.tick()
+            self.status = self.decorated.status
+            self._ended = self.status if self.status in (Status.SUCCESS, Status.FAILURE) else None
+        else:
+            self.status = Status.INVALID if self.ports.get("then_skip") else self._ended
+        yield self
 
 
 class KeepRunningUntilFailure(_Again):
