@@ -137,3 +137,11 @@ def test_a_navigator_that_is_killed_stops_the_robot(drive: Drive, nodes: Nodes) 
 def test_somebody_who_crosses_the_way_is_not_touched(drive: Drive, world: World, speed: float) -> None:
     world.walk("visitor", [(1.4, -1.5), (1.4, 1.5)], speed=speed, loop=False)
     assert drive.end() == ""
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+@pytest.mark.parametrize("pose", [(-1.5, -1.5, 2.0), (-2.0, 0.0, 3.1)])
+def test_a_robot_that_is_carried_away_does_not_report_success(drive: Drive, pose: tuple[float, float, float]) -> None:
+    drive.robot.move(pose[0], pose[1], yaw=pose[2])
+    assert "was aborted" in drive.end()
+    assert math.dist((drive.robot.position.x, drive.robot.position.y), pose[:2]) < 2.0

@@ -57,6 +57,8 @@ class ScanResult:
         Inverse covariance of the pose in the frame of the base.
     problem : str
         Why the scan could not be used, or what was wrong with its odometry; empty where nothing was.
+    fits : bool
+        Whether the scan agrees with the map around it; also true where it was not compared.
     """
 
     pose: Array
@@ -66,6 +68,7 @@ class ScanResult:
     optimized: bool = False
     information: Array = field(default_factory=lambda: np.zeros((3, 3)))
     problem: str = ""
+    fits: bool = True
 
     @property
     def covariance(self) -> Array:
@@ -271,17 +274,18 @@ class Slam:
             if is_key:
                 self._accuracy = self._accuracy.after(match.turned, self._drift)
             self._drift = Drift()
+        fits = match.accepted or not self.config.use_scan_matching
         if not is_key:
-            return ScanResult(match.pose, match.accepted, information=information, problem=problem)
+            return ScanResult(match.pose, match.accepted, information=information, problem=problem, fits=fits)
         self._added_stamp_ns = stamp_ns
         if self._localizing:
             self._remember(cloud, odom)
-            return ScanResult(match.pose, match.accepted, information=information, problem=problem)
+            return ScanResult(match.pose, match.accepted, information=information, problem=problem, fits=fits)
         self._add_key(_KeyScan(odom, cloud), match)
         self.closing_is_due = self.config.do_loop_closing
         closed, optimized = (False, False) if self.defers_closing else self.close_loops()
         self._last_pose = self.key_pose(len(self._keys) - 1)
-        return ScanResult(self._last_pose, match.accepted, True, closed, optimized, information, problem)
+        return ScanResult(self._last_pose, match.accepted, True, closed, optimized, information, problem, fits)
 
     def _unused(self, stamp_ns: int, odom: Array, problem: str) -> ScanResult:
         """Follow odometry with a scan that cannot be used."""
