@@ -103,3 +103,58 @@ def test_speed_limits_and_their_end():
     assert controller.compute_velocity_commands(given)[0] == pytest.approx(0.1)
     controller.set_speed_limit(0.0, percentage=False)
     assert controller.compute_velocity_commands(given)[0] > 0.3
+
+
+def regulated(**more):
+    return RegulatedPurePursuitController(
+        RegulatedPurePursuitParameters(use_rotate_to_heading=False, **more), NavigationContext(footprint=ROBOT)
+    )
+
+
+def test_a_path_behind_is_driven_backwards_where_that_is_allowed():
+    behind = control(line((-3.0, 0.5), (0.0, 0.5), heading=0.0), velocity=(-0.5, 0.0, 0.0))
+    velocity = regulated(allow_reversing=True).compute_velocity_commands(behind)
+    assert velocity[0] < 0.0
+    assert velocity[2] / velocity[0] == pytest.approx(2.0 * 0.5 / 0.75**2)
+    assert regulated().compute_velocity_commands(control(behind.path))[0] > 0.0
+
+
+def test_a_cusp_is_driven_to_before_the_robot_reverses():
+    ahead, back = line((0.4, 0.0)), line((-2.0, 0.3), (0.4, 0.0))[1:]
+    path = np.concatenate([ahead, back])
+    controller = regulated(allow_reversing=True)
+    assert controller.compute_velocity_commands(control(path))[0] > 0.0
+    at_cusp = control(path[ahead.shape[0] - 1 :], pose=(0.4, 0.0, 0.0))
+    assert controller.compute_velocity_commands(at_cusp)[0] < 0.0
+
+
+def test_the_curvature_of_a_fixed_point():
+    path = line((3.0, 0.5), (0.0, 0.5))
+    fixed = regulated(use_fixed_curvature_lookahead=True, curvature_lookahead_dist=1.0)
+    velocity = fixed.compute_velocity_commands(control(path, velocity=MOVING))
+    assert velocity[2] / velocity[0] == pytest.approx(2.0 * 0.5 / 1.0**2)
+
+
+def test_the_curvature_beyond_the_goal():
+    path = line((0.3, 0.1), (0.0, 0.1))
+    near = control(path, velocity=(0.1, 0.0, 0.0), xy_goal_tolerance=0.05)
+    beyond = regulated(use_fixed_curvature_lookahead=True, interpolate_curvature_after_goal=True)
+    velocity = beyond.compute_velocity_commands(near)
+    assert velocity[2] / velocity[0] == pytest.approx(2.0 * 0.1 / 0.6**2, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"allow_reversing": True}, "no effect together"),
+        ({"interpolate_curvature_after_goal": True}, "needs use_fixed_curvature_lookahead"),
+    ],
+)
+def test_parameters_that_do_not_go_together_are_named(parameters, words):
+    lines = []
+    context = NavigationContext(name="FollowPath", footprint=ROBOT, warn=lines.append)
+    controller = RegulatedPurePursuitController(RegulatedPurePursuitParameters(**parameters), context)
+    assert len(lines) == 1
+    assert words in lines[0]
+    behind = control(line((-3.0, 0.0), heading=0.0))
+    assert controller.compute_velocity_commands(behind)[0] >= 0.0

@@ -13,6 +13,7 @@ from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, MAX_NON_OBSTACLE, NO_INFORMATION
 from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
 from daidalos.navigation.errors import NoValidControl
+from daidalos.navigation.paths import split_at_cusps
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,16 @@ class RegulatedPurePursuitParameters(Parameters):
     inflation_cost_scaling_factor: float = parameter(
         3.0, "The inflation layer's cost_scaling_factor, to compute distances from costs.", unit="1/m", above=0.0
     )
+    use_fixed_curvature_lookahead: bool = parameter(
+        False, "Whether the curvature is that of the point at curvature_lookahead_dist."
+    )
+    curvature_lookahead_dist: float = parameter(0.6, "Distance of the point of the curvature.", unit="m", above=0.0)
+    interpolate_curvature_after_goal: bool = parameter(
+        False, "Whether the path goes on straight beyond the goal for the point of the curvature."
+    )
+    allow_reversing: bool = parameter(
+        False, "Whether parts of the path that lie behind the robot are driven backwards, cusp by cusp."
+    )
     use_rotate_to_heading: bool = parameter(True, "Whether to turn on the spot towards the path and the goal.")
     rotate_to_heading_min_angle: float = parameter(
         0.785, "Angle to the path above which the robot turns on the spot.", unit="rad", minimum=0.0
@@ -78,34 +89,50 @@ class RegulatedPurePursuitController(Controller):
         self._speed_limit = self.parameters.desired_linear_vel
         self._at_goal = False
         self._rotating = False
+        self._warn_of_contradictions()
+
+    def _warn_of_contradictions(self) -> None:
+        p, name = self.parameters, self.context.name
+        if p.allow_reversing and p.use_rotate_to_heading:
+            self.context.warn(f"{name}: allow_reversing has no effect together with use_rotate_to_heading")
+        if p.interpolate_curvature_after_goal and not p.use_fixed_curvature_lookahead:
+            self.context.warn(f"{name}: interpolate_curvature_after_goal needs use_fixed_curvature_lookahead")
+
+    @property
+    def _may_reverse(self) -> bool:
+        """Whether the robot drives backwards to what is behind it."""
+        return self.parameters.allow_reversing and not self.parameters.use_rotate_to_heading
 
     def reconfigure(self, parameters: RegulatedPurePursuitParameters) -> None:
         """Implement `NavigationExtension.reconfigure`; lifts the speed limit."""
         super().reconfigure(parameters)
+        self._warn_of_contradictions()
         self._speed_limit = parameters.desired_linear_vel
 
     @property
     def look_ahead(self) -> float:
         """Implement `Controller.look_ahead`."""
-        return max(self.parameters.max_lookahead_dist, self.parameters.lookahead_dist) + 0.5
+        p = self.parameters
+        return max(p.max_lookahead_dist, p.lookahead_dist, p.curvature_lookahead_dist) + 0.5
 
     def compute_velocity_commands(self, control: ControlInput) -> Array:
         """Implement `Controller.compute_velocity_commands`."""
         to_goal = between(control.pose, control.goal)
         if math.hypot(float(to_goal[0]), float(to_goal[1])) <= 0.5 * control.xy_goal_tolerance:
             self._at_goal = True
-        if self._at_goal:
+        if self._at_goal and self.parameters.use_rotate_to_heading:
             return self._turn(control, float(to_goal[2]))
-        carrot = self._carrot(control)
+        points = between(control.pose, self._part_ahead(control.path))[:, :2]
+        carrot = _at_distance(points, self._carrot_distance(control))
         angle = math.atan2(float(carrot[1]), float(carrot[0]))
         if self._must_rotate(angle):
             return self._turn(control, angle)
-        squared = float(carrot[0] ** 2 + carrot[1] ** 2)
-        curvature = 2.0 * float(carrot[1]) / squared if squared > 1e-6 else 0.0
-        speed = self._regulated_speed(control, curvature)
+        curvature = self._curvature(points, carrot)
+        direction = -1.0 if self._may_reverse and carrot[0] < 0.0 else 1.0
+        speed = self._regulated_speed(control, curvature, direction)
         turn = speed * curvature
         if self.parameters.use_collision_detection:
-            self._refuse_collision(control, speed, turn, math.sqrt(squared))
+            self._refuse_collision(control, speed, turn, math.hypot(float(carrot[0]), float(carrot[1])))
         return np.array([speed, 0.0, turn])
 
     def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
@@ -119,22 +146,32 @@ class RegulatedPurePursuitController(Controller):
         self._at_goal = False
         self._rotating = False
 
-    def _carrot(self, control: ControlInput) -> Array:
-        """Return the point (x, y) of the path at the look-ahead distance, in the robot's frame."""
+    def _part_ahead(self, path: Array) -> Array:
+        """Return the path up to the first cusp where the robot may reverse there."""
+        if not self._may_reverse or path.shape[0] < 3:
+            return path
+        return split_at_cusps(path)[0]
+
+    def _carrot_distance(self, control: ControlInput) -> float:
+        """Return the look-ahead distance [m]."""
         p = self.parameters
-        distance = p.lookahead_dist
-        if p.use_velocity_scaled_lookahead_dist:
-            scaled = abs(float(control.velocity[0])) * p.lookahead_time
-            distance = min(max(scaled, p.min_lookahead_dist), p.max_lookahead_dist)
-        points = between(control.pose, control.path)[:, :2]
-        away = np.hypot(points[:, 0], points[:, 1])
-        beyond = np.flatnonzero(away >= distance)
-        if beyond.size == 0:
-            return np.array(points[-1])
-        outer = int(beyond[0])
-        if outer == 0:
-            return np.array(points[0])
-        return _on_circle(points[outer - 1], points[outer], distance)
+        if not p.use_velocity_scaled_lookahead_dist:
+            return p.lookahead_dist
+        scaled = abs(float(control.velocity[0])) * p.lookahead_time
+        return min(max(scaled, p.min_lookahead_dist), p.max_lookahead_dist)
+
+    def _curvature(self, points: Array, carrot: Array) -> float:
+        """Return the curvature [1/m] of the arc to the carrot, or to the point of the fixed distance."""
+        p = self.parameters
+        if p.use_fixed_curvature_lookahead:
+            if p.interpolate_curvature_after_goal and points.shape[0] > 1:
+                step = points[-1] - points[-2]
+                length = max(float(np.hypot(*step)), 1e-6)
+                beyond = points[-1] + p.curvature_lookahead_dist * 2.0 / length * step
+                points = np.concatenate([points, beyond[None]])
+            carrot = _at_distance(points, p.curvature_lookahead_dist)
+        squared = float(carrot[0] ** 2 + carrot[1] ** 2)
+        return 2.0 * float(carrot[1]) / squared if squared > 1e-6 else 0.0
 
     def _must_rotate(self, angle: float) -> bool:
         """Return whether to rotate in place; once started, until the carrot is nearly ahead."""
@@ -158,7 +195,8 @@ class RegulatedPurePursuitController(Controller):
         )
         return np.array([slower if abs(slower) > 0.02 else 0.0, 0.0, turn])
 
-    def _regulated_speed(self, control: ControlInput, curvature: float) -> float:
+    def _regulated_speed(self, control: ControlInput, curvature: float, direction: float) -> float:
+        """Return the velocity ahead [m/s], negative where the direction is -1."""
         p = self.parameters
         speed = self._speed_limit
         radius = 1.0 / max(abs(curvature), 1e-6)
@@ -174,7 +212,7 @@ class RegulatedPurePursuitController(Controller):
             speed = min(speed, max(approach, p.min_approach_linear_velocity))
         step = p.max_linear_accel * self.period
         present = float(control.velocity[0])
-        return min(max(speed, present - step), present + step)
+        return min(max(direction * speed, present - step), present + step)
 
     def _proximity_scale(self, control: ControlInput) -> float:
         """Return the ratio of the speed that the nearest obstacle allows, by its distance from the inflated cost."""
@@ -207,6 +245,17 @@ class RegulatedPurePursuitController(Controller):
                 raise NoValidControl(
                     f"an obstacle is in the way at ({float(pose[0]):.2f}, {float(pose[1]):.2f}), {elapsed:.1f} s ahead"
                 )
+
+
+def _at_distance(points: Array, distance: float) -> Array:
+    """Return the first point of a path (n, 2) in the robot's frame at a distance [m] from it, or the path's last."""
+    beyond = np.flatnonzero(np.hypot(points[:, 0], points[:, 1]) >= distance)
+    if beyond.size == 0:
+        return np.array(points[-1])
+    outer = int(beyond[0])
+    if outer == 0:
+        return np.array(points[0])
+    return _on_circle(points[outer - 1], points[outer], distance)
 
 
 def _on_circle(inner: Array, outer: Array, radius: float) -> Array:
