@@ -15,7 +15,8 @@ import numpy as np
 
 from daidalos.common.kernels import warm_up
 from daidalos.navigation.contracts import ControlInput, NavigationContext
-from daidalos.navigation.controllers.mppi_controller import MppiController
+from daidalos.navigation.controllers.dwb_controller import DwbController, DwbParameters
+from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
@@ -31,6 +32,17 @@ from tests.navigation.flat_world import FlatWorld, arena, barn_world
 
 DATA = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[2] / "shared" / "data")) / "barn"
 ROBOT = Footprint.circle(0.22)
+WAFFLE = DwbParameters(
+    max_vel_x=0.26,
+    max_speed_xy=0.26,
+    max_vel_theta=1.0,
+    acc_lim_x=2.5,
+    acc_lim_theta=3.2,
+    decel_lim_x=-2.5,
+    decel_lim_theta=-3.2,
+    linear_granularity=0.05,
+)
+"""Limits of Nav2's default file of Humble."""
 
 
 def run() -> dict[str, float | str]:
@@ -87,12 +99,17 @@ def measure_controllers() -> dict[str, float | str]:
     pose = np.array([*costmap.map_to_world(30, 30), 0.0])
     path = pose + np.stack([np.linspace(0.0, 1.2, 25), np.linspace(0.0, 0.3, 25), np.zeros(25)], axis=-1)
     control = ControlInput(pose, np.array([0.3, 0.0, 0.1]), path, path[-1], 3.0, costmap)
-    mppi, pursuit = (
-        MppiController(None, NavigationContext(footprint=ROBOT)),
-        RegulatedPurePursuitController(None, NavigationContext(footprint=ROBOT)),
+    context = NavigationContext(footprint=ROBOT)
+    mppi, large, pursuit, window = (
+        MppiController(None, context),
+        MppiController(MppiParameters(batch_size=2000), context),
+        RegulatedPurePursuitController(None, context),
+        DwbController(WAFFLE, context),
     )
     return {
         "navigation.mppi_cycle_1000x56_ms": median_ms(lambda _: mppi.compute_velocity_commands(control), count=100),
+        "navigation.mppi_cycle_2000x56_ms": median_ms(lambda _: large.compute_velocity_commands(control), count=100),
+        "navigation.dwb_cycle_ms": median_ms(lambda _: window.compute_velocity_commands(control), count=100),
         "navigation.pure_pursuit_cycle_ms": median_ms(lambda _: pursuit.compute_velocity_commands(control), count=100),
     }
 
