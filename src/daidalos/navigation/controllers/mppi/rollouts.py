@@ -1,7 +1,7 @@
 """Rollouts: many noisy control sequences, driven through the motion model of the robot."""
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ class Limits:
 
     def as_array(self) -> Array:
         """Return the limits in the order of the fields, for `integrate`."""
-        return np.array(astuple(self), dtype=np.float64)
+        return np.array([getattr(self, entry.name) for entry in fields(self)], dtype=np.float64)
 
 
 @dataclass(frozen=True)
