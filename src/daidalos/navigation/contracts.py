@@ -239,6 +239,11 @@ class Controller(NavigationExtension):
     def look_ahead(self) -> float:
         """Length [m] of the path that the controller uses."""
 
+    @property
+    def inversion_tolerances(self) -> tuple[float, float] | None:
+        """How near [m], [rad] to a cusp of the path the robot has to come before it reverses; None for any distance."""
+        return None
+
     @abstractmethod
     def compute_velocity_commands(self, control: ControlInput) -> Array:
         """Compute the velocity of the next cycle.

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from daidalos.navigation.contracts import NavigationContext
+from daidalos.navigation.controllers.path_handler import PathHandler
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import (
     RegulatedPurePursuitController,
     RegulatedPurePursuitParameters,
@@ -120,12 +121,18 @@ def test_a_path_behind_is_driven_backwards_where_that_is_allowed():
 
 
 def test_a_cusp_is_driven_to_before_the_robot_reverses():
-    ahead, back = line((0.4, 0.0)), line((-2.0, 0.3), (0.4, 0.0))[1:]
-    path = np.concatenate([ahead, back])
-    controller = regulated(allow_reversing=True)
-    assert controller.compute_velocity_commands(control(path))[0] > 0.0
-    at_cusp = control(path[ahead.shape[0] - 1 :], pose=(0.4, 0.0, 0.0))
-    assert controller.compute_velocity_commands(at_cusp)[0] < 0.0
+    ahead, back = line((1.0, 0.0)), line((-1.0, 0.0), (1.0, 0.0), heading=0.0)[1:]
+    back[:, 2] = 0.0
+    path, controller, handler = np.concatenate([ahead, back]), regulated(allow_reversing=True), PathHandler()
+    handler.set_plan(path)
+    pose, velocity, farthest = np.zeros(3), np.zeros(3), 0.0
+    for _ in range(200):
+        seen, _, left = handler.ahead(pose, np.zeros(3), controller.look_ahead, controller.inversion_tolerances)
+        velocity = controller.compute_velocity_commands(control(seen, None, pose, velocity, left))
+        pose = pose + 0.05 * np.array([velocity[0], 0.0, velocity[2]])
+        farthest = max(farthest, pose[0])
+    assert 0.9 <= farthest < 1.1
+    assert pose[0] == pytest.approx(-1.0, abs=0.15)
 
 
 def test_the_curvature_of_a_fixed_point():

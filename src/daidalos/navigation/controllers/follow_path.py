@@ -140,7 +140,9 @@ class FollowPath:
         """
         if not self._handler.has_plan:
             raise InvalidPath("there is no path to follow")
-        path, goal, distance = self._handler.ahead(pose, plan_frame, self.controller.look_ahead)
+        path, goal, distance = self._handler.ahead(
+            pose, plan_frame, self.controller.look_ahead, self.controller.inversion_tolerances
+        )
         if self.goal_checker.is_goal_reached(pose, goal, velocity):
             return FollowPathStep(np.zeros(3), True, distance, path)
         if not self.progress_checker.check(pose, now):

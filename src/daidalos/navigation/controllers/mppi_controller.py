@@ -74,6 +74,9 @@ class MppiParameters(Parameters):
     gamma: float = parameter(0.015, "Weight of smooth control against low cost.", minimum=0.0)
     prune_distance: float = parameter(1.7, "Length of path ahead that is looked at.", unit="m", above=0.0)
     retry_attempt_limit: int = parameter(1, "Number of further optimizations when all trajectories collide.", minimum=0)
+    enforce_path_inversion: bool = parameter(False, "Whether the robot drives to the cusps of the path.")
+    inversion_xy_tolerance: float = parameter(0.2, "Distance of a cusp at which it is reached.", unit="m", minimum=0.0)
+    inversion_yaw_tolerance: float = parameter(0.4, "Angle at which a cusp is reached.", unit="rad", minimum=0.0)
     open_loop: bool = parameter(True, "Whether rollouts begin with the last command instead of odometry's velocity.")
     noise_correlation_time: float = parameter(0.5, "How long a sampled deviation lasts.", unit="s", minimum=0.0)
     critics: tuple[str, ...] = parameter(
@@ -158,6 +161,12 @@ class MppiController(Controller):
         p = self.parameters
         fastest = math.hypot(p.vx_max, p.vy_max) if p.motion_model == "Omni" else p.vx_max
         return max(p.prune_distance, fastest * p.time_steps * p.model_dt) + 0.3
+
+    @property
+    def inversion_tolerances(self) -> tuple[float, float] | None:
+        """Implement `Controller.inversion_tolerances`."""
+        p = self.parameters
+        return (p.inversion_xy_tolerance, p.inversion_yaw_tolerance) if p.enforce_path_inversion else None
 
     @property
     def trajectory(self) -> Array:

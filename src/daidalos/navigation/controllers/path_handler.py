@@ -3,9 +3,9 @@
 import numpy as np
 
 from daidalos.common.arrays import Array
-from daidalos.common.pose2 import compose
+from daidalos.common.pose2 import between, compose
 from daidalos.navigation.errors import InvalidPath
-from daidalos.navigation.paths import distances_along
+from daidalos.navigation.paths import distances_along, split_at_cusps
 
 
 class PathHandler:
@@ -25,6 +25,7 @@ class PathHandler:
         self._plan = np.zeros((0, 3))
         self._along = np.zeros(0)
         self._passed = 0
+        self._cusps: list[int] = []
 
     @property
     def has_plan(self) -> bool:
@@ -46,8 +47,12 @@ class PathHandler:
         self._plan = plan.copy()
         self._along = distances_along(plan)
         self._passed = 0
+        lengths = [part.shape[0] - 1 for part in split_at_cusps(plan)] if plan.shape[0] > 2 else []
+        self._cusps = np.cumsum(lengths, dtype=np.int64)[:-1].tolist()
 
-    def ahead(self, pose: Array, plan_frame: Array, look_ahead: float) -> tuple[Array, Array, float]:
+    def ahead(
+        self, pose: Array, plan_frame: Array, look_ahead: float, inversion: tuple[float, float] | None = None
+    ) -> tuple[Array, Array, float]:
         """Return the part of the plan ahead of the robot, and drop the part behind.
 
         Parameters
@@ -58,6 +63,9 @@ class PathHandler:
             Pose of the plan's frame in the costmap's frame.
         look_ahead : float
             How much [m] of the path is wanted.
+        inversion : tuple of float, optional
+            How near [m], [rad] the robot has to come to a cusp of the plan before it sees what follows; it sees past
+            cusps where left out.
 
         Returns
         -------
@@ -69,12 +77,29 @@ class PathHandler:
             Length [m] of all that is left of the plan.
         """
         start = self._along[self._passed]
+        limit = self._next_cusp(pose, plan_frame, inversion)
         end = int(np.searchsorted(self._along, start + self.max_robot_pose_search_dist, side="right"))
+        end = min(end, limit + 1)
         near = compose(plan_frame, self._plan[self._passed : end])
         away = np.hypot(near[:, 0] - pose[0], near[:, 1] - pose[1])
         self._passed += int(np.argmin(away))
         start = self._along[self._passed]
-        end = int(np.searchsorted(self._along, start + look_ahead, side="right"))
+        end = min(int(np.searchsorted(self._along, start + look_ahead, side="right")), limit + 1)
         path = compose(plan_frame, self._plan[self._passed : max(end, self._passed + 1)])
         goal = compose(plan_frame, self._plan[-1])
         return path, goal, float(self._along[-1] - start)
+
+    def _next_cusp(self, pose: Array, plan_frame: Array, inversion: tuple[float, float] | None) -> int:
+        """Return the index of the cusp that the robot has yet to reach, or of the plan's last pose."""
+        last = self._plan.shape[0] - 1
+        if inversion is None:
+            return last
+        while self._cusps:
+            cusp = self._cusps[0]
+            if self._passed < cusp:
+                away = between(pose, compose(plan_frame, self._plan[cusp]))
+                if np.hypot(away[0], away[1]) > inversion[0] or abs(float(away[2])) > inversion[1]:
+                    return cusp
+                self._passed = cusp
+            self._cusps.pop(0)
+        return last

@@ -13,7 +13,6 @@ from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, MAX_NON_OBSTACLE, NO_INFORMATION
 from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
 from daidalos.navigation.errors import NoValidControl
-from daidalos.navigation.paths import split_at_cusps
 
 
 @dataclass(frozen=True)
@@ -68,6 +67,10 @@ class RegulatedPurePursuitParameters(Parameters):
     max_angular_accel: float = parameter(3.2, "Largest turn acceleration on the spot.", unit="rad/s^2", above=0.0)
 
 
+_CUSP_TOLERANCES = (0.1, 0.4)
+"""Distance [m] and angle [rad] at which the robot has reached a cusp of the path, and reverses."""
+
+
 class RegulatedPurePursuitController(Controller):
     """Pure pursuit with a regulated speed.
 
@@ -115,6 +118,11 @@ class RegulatedPurePursuitController(Controller):
         p = self.parameters
         return max(p.max_lookahead_dist, p.lookahead_dist, p.curvature_lookahead_dist) + 0.5
 
+    @property
+    def inversion_tolerances(self) -> tuple[float, float] | None:
+        """Implement `Controller.inversion_tolerances`."""
+        return _CUSP_TOLERANCES if self._may_reverse else None
+
     def compute_velocity_commands(self, control: ControlInput) -> Array:
         """Implement `Controller.compute_velocity_commands`."""
         to_goal = between(control.pose, control.goal)
@@ -122,7 +130,7 @@ class RegulatedPurePursuitController(Controller):
             self._at_goal = True
         if self._at_goal and self.parameters.use_rotate_to_heading:
             return self._turn(control, float(to_goal[2]))
-        points = between(control.pose, self._part_ahead(control.path))[:, :2]
+        points = between(control.pose, control.path)[:, :2]
         carrot = _at_distance(points, self._carrot_distance(control))
         angle = math.atan2(float(carrot[1]), float(carrot[0]))
         if self._must_rotate(angle):
@@ -145,12 +153,6 @@ class RegulatedPurePursuitController(Controller):
         """Implement `Controller.reset`."""
         self._at_goal = False
         self._rotating = False
-
-    def _part_ahead(self, path: Array) -> Array:
-        """Return the path up to the first cusp where the robot may reverse there."""
-        if not self._may_reverse or path.shape[0] < 3:
-            return path
-        return split_at_cusps(path)[0]
 
     def _carrot_distance(self, control: ControlInput) -> float:
         """Return the look-ahead distance [m]."""

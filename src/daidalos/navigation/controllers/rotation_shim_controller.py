@@ -81,6 +81,11 @@ class RotationShimController(Controller):
         """Implement `Controller.look_ahead`."""
         return max(self.primary.look_ahead, self.parameters.forward_sampling_distance)
 
+    @property
+    def inversion_tolerances(self) -> tuple[float, float] | None:
+        """Implement `Controller.inversion_tolerances` by the primary controller's."""
+        return self.primary.inversion_tolerances
+
     def compute_velocity_commands(self, control: ControlInput) -> Array:
         """Implement `Controller.compute_velocity_commands`."""
         to_goal = between(control.pose, control.goal)
