@@ -25,6 +25,9 @@ from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, I
 from daidalos.navigation.costmap.layers.obstacle_layer import Observation, ObstacleLayer
 from daidalos.navigation.paths import path_length
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
+from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
+from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid, SmacPlannerHybridParameters
+from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.navigation.closed_loop import free_pose, jackal, turtlebot
@@ -50,7 +53,7 @@ def run() -> dict[str, float | str]:
     start = time.perf_counter()
     warm_up("daidalos.navigation")
     results: dict[str, float | str] = {"navigation.warm_up_s": time.perf_counter() - start}
-    results |= measure_planner() | measure_costmaps() | measure_controllers()
+    results |= measure_planner() | measure_planners() | measure_costmaps() | measure_controllers()
     results |= measure_arena("mppi") | measure_arena("rpp")
     return results | measure_barn(range(0, 100, 4))
 
@@ -67,6 +70,28 @@ def measure_planner() -> dict[str, float | str]:
             milliseconds = median_ms(lambda _, p=planner, c=costmap, s=start, g=goal: p.create_plan(c, s, g))
             results[f"navigation.navfn{kind}_{name}_ms"] = milliseconds
         results[f"navigation.navfn_{name}_path_m"] = path_length(NavfnPlanner().create_plan(costmap, start, goal))
+    return results
+
+
+def measure_planners() -> dict[str, float | str]:
+    """NavFn on a million cells, Hybrid-A* on 147,000 cells and on a path of 75 m; goals of 15, 20 and 60 ms."""
+    results: dict[str, float | str] = {}
+    hybrid = SmacPlannerHybrid(SmacPlannerHybridParameters(motion_model_for_search="REEDS_SHEPP"))
+    for name, height, width, planner in (
+        ("navfn_1m", 1000, 1000, NavfnPlanner()),
+        ("theta_star_147k", 380, 387, ThetaStarPlanner()),
+        ("smac_2d_147k", 380, 387, SmacPlanner2D()),
+        ("smac_hybrid_dubins_147k", 380, 387, SmacPlannerHybrid()),
+        ("smac_hybrid_reeds_shepp_147k", 380, 387, hybrid),
+        ("smac_hybrid_dubins_75m", 1000, 1100, SmacPlannerHybrid()),
+        ("smac_hybrid_reeds_shepp_75m", 1000, 1100, hybrid),
+    ):
+        costmap = rooms(height, width)
+        free = np.argwhere(costmap.costs == 0)
+        start, goal = (np.array([*costmap.map_to_world(*cell[::-1]), 0.0]) for cell in (free[0], free[-1]))
+        milliseconds = median_ms(lambda _, p=planner, c=costmap, s=start, g=goal: p.create_plan(c, s, g), count=9)
+        results[f"navigation.{name}_ms"] = milliseconds
+        results[f"navigation.{name}_path_m"] = path_length(planner.create_plan(costmap, start, goal))
     return results
 
 

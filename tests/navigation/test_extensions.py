@@ -10,6 +10,7 @@ from daidalos.navigation.controllers.regulated_pure_pursuit_controller import Re
 from daidalos.navigation.controllers.rotation_shim_controller import RotationShimController
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
 from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
+from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid
 from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 
 
@@ -19,6 +20,7 @@ from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
     [
         ("nav2_navfn_planner", NavfnPlanner),
         ("nav2_smac_planner", SmacPlanner2D),
+        ("nav2_smac_planner", SmacPlannerHybrid),
         ("nav2_theta_star_planner", ThetaStarPlanner),
     ],
 )

@@ -22,6 +22,7 @@ from daidalos.navigation.costmap.layers.voxel_layer import VoxelLayer
 from daidalos.navigation.costmap.observation import Observation
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
 from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
+from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid, SmacPlannerHybridParameters
 from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 from daidalos.navigation.smoothers.simple_smoother import SimpleSmoother
 
@@ -66,6 +67,9 @@ def _plan(costmap: Costmap) -> None:
     SimpleSmoother().smooth(path, costmap)
     for kind in (ThetaStarPlanner, SmacPlanner2D):
         kind().create_plan(costmap, start, goal)
+    for model in ("DUBIN", "REEDS_SHEPP"):
+        driven = SmacPlannerHybridParameters(motion_model_for_search=model, lookup_table_size=1.0)
+        SmacPlannerHybrid(driven, NavigationContext(footprint=OUTLINE)).create_plan(costmap, start, goal)
 
 
 def _control(costmap: Costmap) -> None:
