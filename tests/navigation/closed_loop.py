@@ -17,6 +17,7 @@ from daidalos.navigation.controllers.goal_checkers.simple_goal_checker import (
     SimpleGoalChecker,
     SimpleGoalCheckerParameters,
 )
+from daidalos.navigation.controllers.graceful_controller import GracefulController
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
 from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
 from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import SimpleProgressChecker
@@ -251,6 +252,7 @@ def turtlebot(world, pose, known, seed=0, kind="mppi"):
     controller = {
         "mppi": mppi,
         "shim": RotationShimController(None, NavigationContext(footprint=footprint), primary=mppi),
+        "graceful": GracefulController(None, NavigationContext(footprint=footprint)),
         "rpp": RegulatedPurePursuitController(None, NavigationContext(footprint=footprint)),
     }[kind]
     return Stack(robot, footprint, controller, everywhere, around)

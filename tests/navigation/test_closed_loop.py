@@ -28,8 +28,9 @@ def test_random_goals_among_obstacles_that_the_map_does_not_know(kind, seed):
         assert turning < 3.0, "the robot wobbles"
 
 
-def test_one_goal_through_a_door():
-    stack = turtlebot(WORLD, [1.5, 1.5, 0.0], WALLS)
+@pytest.mark.parametrize("kind", ["mppi", "graceful"])
+def test_one_goal_through_a_door(kind):
+    stack = turtlebot(WORLD, [1.5, 1.5, 0.0], WALLS, kind=kind)
     arrival = stack.drive_to(np.array([4.5, 0.8, -1.0]))
     assert arrival.reached
     assert arrival.min_clearance > 0.05

@@ -31,6 +31,8 @@ class EgoPolarLaw:
         Bounds of the speed [m/s].
     v_angular_max : float
         Bound of the turn rate [rad/s]; the speed falls with it, so that the curve stays the same.
+    deceleration_max : float
+        Deceleration [m/s^2] by which the robot can stop at the target; bounds the speed on the way to it.
     """
 
     k_phi: float
@@ -41,6 +43,7 @@ class EgoPolarLaw:
     v_linear_min: float
     v_linear_max: float
     v_angular_max: float
+    deceleration_max: float = math.inf
 
     def curvature(self, pose: Array, target: Array, *, backward: bool = False) -> float:
         """Return the curvature [1/m] of the path from a pose (x, y, yaw), as driven ahead; 0 at the target itself.
@@ -66,6 +69,7 @@ class EgoPolarLaw:
         speed = self.v_linear_max / (1.0 + self.beta * abs(curvature) ** self.lambda_)
         if self.slowdown_radius > 0.0:
             speed = min(speed, self.v_linear_max * distance / self.slowdown_radius)
+        speed = min(speed, math.sqrt(2.0 * distance * self.deceleration_max))
         speed = min(max(speed, self.v_linear_min), self.v_linear_max)
         turn = min(max(curvature * speed, -self.v_angular_max), self.v_angular_max)
         if curvature:

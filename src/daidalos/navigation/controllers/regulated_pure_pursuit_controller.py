@@ -9,6 +9,7 @@ from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between
 from daidalos.navigation.contracts import ControlInput, Controller, NavigationContext
+from daidalos.navigation.controllers.look_ahead import look_ahead_point
 from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, MAX_NON_OBSTACLE, NO_INFORMATION
 from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
@@ -131,7 +132,7 @@ class RegulatedPurePursuitController(Controller):
         if self._at_goal and self.parameters.use_rotate_to_heading:
             return self._turn(control, float(to_goal[2]))
         points = between(control.pose, control.path)[:, :2]
-        carrot = _at_distance(points, self._carrot_distance(control))
+        carrot = look_ahead_point(points, self._carrot_distance(control))[0]
         angle = math.atan2(float(carrot[1]), float(carrot[0]))
         if self._must_rotate(angle):
             return self._turn(control, angle)
@@ -171,7 +172,7 @@ class RegulatedPurePursuitController(Controller):
                 length = max(float(np.hypot(*step)), 1e-6)
                 beyond = points[-1] + p.curvature_lookahead_dist * 2.0 / length * step
                 points = np.concatenate([points, beyond[None]])
-            carrot = _at_distance(points, p.curvature_lookahead_dist)
+            carrot = look_ahead_point(points, p.curvature_lookahead_dist)[0]
         squared = float(carrot[0] ** 2 + carrot[1] ** 2)
         return 2.0 * float(carrot[1]) / squared if squared > 1e-6 else 0.0
 
@@ -247,24 +248,3 @@ class RegulatedPurePursuitController(Controller):
                 raise NoValidControl(
                     f"an obstacle is in the way at ({float(pose[0]):.2f}, {float(pose[1]):.2f}), {elapsed:.1f} s ahead"
                 )
-
-
-def _at_distance(points: Array, distance: float) -> Array:
-    """Return the first point of a path (n, 2) in the robot's frame at a distance [m] from it, or the path's last."""
-    beyond = np.flatnonzero(np.hypot(points[:, 0], points[:, 1]) >= distance)
-    if beyond.size == 0:
-        return np.array(points[-1])
-    outer = int(beyond[0])
-    if outer == 0:
-        return np.array(points[0])
-    return _on_circle(points[outer - 1], points[outer], distance)
-
-
-def _on_circle(inner: Array, outer: Array, radius: float) -> Array:
-    """Return the intersection of a circle around the origin with the line from a point inside to one outside."""
-    step = outer - inner
-    a = float(step @ step)
-    b = float(inner @ step)
-    c = float(inner @ inner) - radius * radius
-    share = (-b + math.sqrt(max(b * b - a * c, 0.0))) / a if a > 0.0 else 1.0
-    return np.array(inner + min(max(share, 0.0), 1.0) * step)
