@@ -221,7 +221,9 @@ def test_recoveries_are_counted():
     assert tree.blackboard.get("number_recoveries") == 4
 
 
-@pytest.mark.parametrize("kind", ["planner", "controller", "smoother", "goal_checker", "progress_checker"])
+@pytest.mark.parametrize(
+    "kind", ["planner", "controller", "smoother", "goal_checker", "progress_checker", "path_handler"]
+)
 def test_selectors_take_what_was_chosen_or_the_default(kind):
     robot = ScriptedRobot()
     name = "".join(word.capitalize() for word in kind.split("_"))

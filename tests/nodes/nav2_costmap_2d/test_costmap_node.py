@@ -11,14 +11,21 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import PolygonStamped
 from nav2_msgs.msg import Costmap
-from nav2_msgs.srv import ClearCostmapAroundRobot, ClearCostmapExceptRegion, ClearEntireCostmap, GetCostmap
+from nav2_msgs.srv import (
+    ClearCostmapAroundPose,
+    ClearCostmapAroundRobot,
+    ClearCostmapExceptRegion,
+    ClearEntireCostmap,
+    GetCostmap,
+    GetCosts,
+)
 from nav_msgs.msg import OccupancyGrid
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
-from daidalos.nodes.conversions import grid_array, grid_message, transform_stamped
+from daidalos.nodes.conversions import grid_array, grid_message, pose_stamped, transform_stamped
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.nav2_planner.planner_server import PlannerServer
 from daidalos.samples.fields import time_message
@@ -162,6 +169,19 @@ def test_what_was_seen_can_be_forgotten(stage: Callable[[dict[str, Any]], Stage]
     assert cost(costmap, *FAR) == LETHAL
     mark()
     bench.stage.call(ClearCostmapExceptRegion, service.format("clear_except"), reset_distance=1.2)
+    costmap = bench.step_until(lambda costmap: cost(costmap, *FAR) != LETHAL)
+    assert cost(costmap, *NEAR) == LETHAL
+    mark()
+    poses = [pose_stamped(np.array([*place, 0.0]), "odom", time_message(0)) for place in (NEAR, FAR, (1.0, -1.0))]
+    for use_footprint, blocked in ((False, LETHAL), (True, LETHAL)):
+        answer = bench.stage.call(GetCosts, service.format("get_cost"), poses=poses, use_footprint=use_footprint)
+        assert answer.success
+        assert list(answer.costs) == [blocked, blocked, FREE]
+    nowhere = pose_stamped(np.zeros(3), "nowhere", time_message(0))
+    answer = bench.stage.call(GetCosts, service.format("get_cost"), poses=[nowhere])
+    assert (answer.success, list(answer.costs)) == (False, [])
+    bench.stage.call(ClearCostmapAroundPose, service.format("clear_around_pose"), pose=nowhere, reset_distance=9.0)
+    bench.stage.call(ClearCostmapAroundPose, service.format("clear_around_pose"), pose=poses[1], reset_distance=0.3)
     costmap = bench.step_until(lambda costmap: cost(costmap, *FAR) != LETHAL)
     assert cost(costmap, *NEAR) == LETHAL
     mark()

@@ -7,7 +7,7 @@ import numpy as np
 from py_trees.common import Status
 
 from daidalos.navigation.trees.node import Node, Port, Ports, TreeContext
-from daidalos.navigation.trees.services import Task
+from daidalos.navigation.trees.services import NO_ERROR, Task
 
 RECOVERIES = "number_recoveries"
 """Name on the blackboard under which recovery actions are counted."""
@@ -16,7 +16,7 @@ SERVER: dict[str, Port] = {"server_name": Port(str, None), "server_timeout": Por
 """Inputs of every node that calls an action server."""
 
 ERRORS: dict[str, Port] = {"error_code_id": Port(str, output=True), "error_msg": Port(str, output=True)}
-"""Outputs of every node that calls an action server: name of the error code, and the reason for people."""
+"""Outputs of every node that calls an action server: the `ErrorCode`, and the reason for people."""
 
 
 class ActionNode(Node):
@@ -71,13 +71,17 @@ class ActionNode(Node):
         outputs = {name: port.field or name for name, port in cls.PORTS.items() if port.output and name not in ERRORS}
         return {name: getattr(result, field) for name, field in outputs.items() if hasattr(result, field)}
 
+    def written(self, outputs: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the values of output ports at the end, from the task's outputs; by default these."""
+        return outputs
+
     def initialise(self) -> None:
         """Start the task."""
         self._sent = self.ports.inputs()
         if self._sent.get("is_recovery", self.RECOVERY):
             count = self.ports.blackboard.get(RECOVERIES, 0)
             self.ports.blackboard.set(RECOVERIES, count + 1)
-        self.ports.set("error_code_id", "NONE")
+        self.ports.set("error_code_id", NO_ERROR)
         self._task = self.services.start(type(self), self._sent)
 
     def update(self) -> Status:
@@ -91,7 +95,7 @@ class ActionNode(Node):
             self._pass_changes_on(self._task)
             return Status.RUNNING
         self._task = None
-        for key, value in outcome.outputs.items():
+        for key, value in self.written(outcome.outputs).items():
             self.ports.set(key, value)
         self.ports.set("error_code_id", outcome.error_code)
         self.ports.set("error_msg", outcome.error_msg)

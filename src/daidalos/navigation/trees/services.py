@@ -11,6 +11,30 @@ if TYPE_CHECKING:
     from daidalos.navigation.trees.action_node import ActionNode
 
 
+class ErrorCode(str):
+    """Name of an error code of an action, with its number.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``NO_VALID_PATH``.
+    number : int
+        Value of the constant of that name in the action's result.
+    """
+
+    number: int
+
+    def __new__(cls, name: str, number: int) -> ErrorCode:
+        """Create the name with its number."""
+        code = super().__new__(cls, name)
+        code.number = number
+        return code
+
+
+NO_ERROR = ErrorCode("NONE", 0)
+"""Error code of a success."""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """Result of a task.
@@ -22,14 +46,14 @@ class Outcome:
     outputs : mapping of str to object
         Values for the output ports of the node that asked (`path`, ...).
     error_code : str
-        Name of the error code of the action, `NONE` on success.
+        Name of the error code of the action, an `ErrorCode` where its number is known; `NO_ERROR` on success.
     error_msg : str
         Why it failed, for people.
     """
 
     succeeded: bool
     outputs: Mapping[str, Any] = field(default_factory=dict)
-    error_code: str = "NONE"
+    error_code: str = NO_ERROR
     error_msg: str = ""
 
 

@@ -15,7 +15,7 @@ from tf2_ros import Buffer, TransformException
 from daidalos.common.arrays import Array
 from daidalos.common.pose2 import compose
 from daidalos.navigation.trees.action_node import ActionNode
-from daidalos.navigation.trees.services import Outcome, Task
+from daidalos.navigation.trees.services import ErrorCode, Outcome, Task
 from daidalos.nodes.action_results import error_name
 from daidalos.nodes.conversions import pose2_of, pose2_of_transform, pose_stamped, velocity_of
 from daidalos.nodes.qos import LATCHED
@@ -164,7 +164,11 @@ class _ServiceTask:
 
     def poll(self) -> Outcome | None:
         """Return whether the answer means success, once it has come."""
-        return Outcome(self._node.is_success(self._future.result())) if self._future.done() else None
+        if not self._future.done():
+            return None
+        response = self._future.result()
+        is_success = self._node.is_success(response)
+        return Outcome(is_success, self._node.outputs(response) if is_success else {})
 
     def feedback(self) -> Mapping[str, Any]:
         """Return nothing: there is none."""
@@ -223,13 +227,15 @@ class _ActionTask:
     def poll(self) -> Outcome | None:
         """Return how the goal ended, None while it goes on."""
         if self._failure:
-            return Outcome(False, error_code="UNKNOWN", error_msg=self._failure)
+            unknown = ErrorCode("UNKNOWN", getattr(self._client.action_type.Result, "UNKNOWN", 0))
+            return Outcome(False, error_code=unknown, error_msg=self._failure)
         if self._result is None:
             return None
         result = self._result.result
         if self._result.status == _SUCCEEDED:
             return Outcome(True, self._node.outputs(result))
-        code = error_name(result) if hasattr(result, "error_code") else "UNKNOWN"
+        has_code = hasattr(result, "error_code")
+        code = ErrorCode(error_name(result), int(result.error_code)) if has_code else "UNKNOWN"
         return Outcome(False, error_code=code, error_msg=getattr(result, "error_msg", ""))
 
     def feedback(self) -> Mapping[str, Any]:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.arrays import Array
+from daidalos.common.pose2 import compose
+from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
 from daidalos.navigation.costmap.occupancy import to_occupancy
-from daidalos.nodes.conversions import grid_message
+from daidalos.nodes.action_results import TransformFailed
+from daidalos.nodes.conversions import grid_message, pose2_of
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message, voxel_message
 from daidalos.nodes.qos import LATCHED
 
@@ -36,15 +40,19 @@ class CostmapInterface:
 
     def _create_services(self, name: str) -> None:
         from nav2_msgs.srv import (
+            ClearCostmapAroundPose,
             ClearCostmapAroundRobot,
             ClearCostmapExceptRegion,
             ClearEntireCostmap,
             GetCostmap,
+            GetCosts,
         )
 
         self._node.create_service(ClearEntireCostmap, f"clear_entirely_{name}", self._on_clear_entirely)
         self._node.create_service(ClearCostmapAroundRobot, f"clear_around_{name}", self._on_clear_around)
         self._node.create_service(ClearCostmapExceptRegion, f"clear_except_{name}", self._on_clear_except)
+        self._node.create_service(ClearCostmapAroundPose, f"clear_around_pose_{name}", self._on_clear_around_pose)
+        self._node.create_service(GetCosts, f"get_cost_{name}", self._on_get_costs)
         self._node.create_service(GetCostmap, "get_costmap", self._on_get_costmap)
 
     def publish(self) -> None:
@@ -86,6 +94,39 @@ class CostmapInterface:
             if self._node.layered is not None and pose is not None:
                 self._node.layered.clear_around(pose, request.reset_distance)
         return response
+
+    def _on_clear_around_pose(self, request: Any, response: Any) -> Any:
+        try:
+            pose = self._pose(request.pose)
+        except TransformFailed as problem:
+            self._node.get_logger().error(f"nothing is cleared: {problem}")
+            return response
+        with self._node.lock:
+            if self._node.layered is not None:
+                self._node.layered.clear_around(pose, request.reset_distance)
+        return response
+
+    def _on_get_costs(self, request: Any, response: Any) -> Any:
+        """Return the costs of poses, under the footprint where it is asked for; no success without a transform."""
+        if self._node.layered is None:
+            return response
+        try:
+            poses = [self._pose(pose) for pose in request.poses]
+        except TransformFailed as problem:
+            self._node.get_logger().error(f"there are no costs: {problem}")
+            return response
+        costmap = self._node.snapshot()
+        checker = FootprintCollisionChecker(costmap, self._node.footprint)
+        for pose in poses:
+            cost = checker.footprint_cost_at(pose) if request.use_footprint else costmap.cost_at(pose[0], pose[1])
+            response.costs.append(float(cost))
+        response.success = True
+        return response
+
+    def _pose(self, stamped: Any) -> Array:
+        """Return a pose (x, y, yaw) in the costmap's frame."""
+        frame = stamped.header.frame_id or self._node.global_frame
+        return compose(self._node.pose_of(frame), pose2_of(stamped.pose))
 
     def _on_clear_except(self, request: Any, response: Any) -> Any:
         pose = self._node.robot_pose()

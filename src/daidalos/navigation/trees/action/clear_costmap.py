@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from daidalos.navigation.trees.action_node import ActionNode
-from daidalos.navigation.trees.node import Port
+from daidalos.navigation.trees.node import Port, entry
 
 _SERVICE = {"service_name": Port(str), "server_timeout": Port(float, None)}
 
@@ -32,4 +32,13 @@ class ClearCostmapExceptRegion(ActionNode):
     names = ("ClearCostmapExceptRegion",)
     INTERFACE = "nav2_msgs/srv/ClearCostmapExceptRegion"
     PORTS: ClassVar[dict[str, Port]] = {**_SERVICE, "reset_distance": Port(float, 1.0)}
+    RECOVERY: ClassVar[bool] = True
+
+
+class ClearCostmapAroundPose(ActionNode):
+    """Action node that clears a square with an edge [m] around a pose."""
+
+    names = ("ClearCostmapAroundPose",)
+    INTERFACE = "nav2_msgs/srv/ClearCostmapAroundPose"
+    PORTS: ClassVar[dict[str, Port]] = {**_SERVICE, "pose": Port(entry), "reset_distance": Port(float, 1.0)}
     RECOVERY: ClassVar[bool] = True

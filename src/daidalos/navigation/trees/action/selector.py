@@ -66,3 +66,11 @@ class ProgressCheckerSelector(_Selector):
     names = ("ProgressCheckerSelector",)
     KIND = "progress_checker"
     PORTS: ClassVar[dict[str, Port]] = _ports("progress_checker")
+
+
+class PathHandlerSelector(_Selector):
+    """Action node that outputs the last selected path handler, or the default."""
+
+    names = ("PathHandlerSelector",)
+    KIND = "path_handler"
+    PORTS: ClassVar[dict[str, Port]] = _ports("path_handler")

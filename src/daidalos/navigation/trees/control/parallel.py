@@ -78,3 +78,27 @@ class ParallelAll(_AtOnce):
         limit = self.ports.get("max_failures")
         allowed = limit if limit >= 0 else max(len(statuses) + limit + 1, 0)
         return Status.FAILURE if statuses.count(Status.FAILURE) >= allowed else Status.SUCCESS
+
+
+class NonblockingSequence(_AtOnce):
+    """Control node that ticks all its children until they have succeeded together; it fails with the first that does.
+
+    A child that has ended is ticked again as long as another one runs.
+    """
+
+    names = ("NonblockingSequence",)
+
+    def tick(self) -> Iterator[Any]:
+        """Tick each child until one fails."""
+        for child in self.children:
+            yield from child.tick()
+            if child.status == Status.FAILURE:
+                break
+        self.conclude(self._outcome([child.status for child in self.children]))
+        yield self
+
+    def _outcome(self, statuses: list[Status]) -> Status:
+        for status in (Status.FAILURE, Status.RUNNING, Status.SUCCESS):
+            if status in statuses:
+                return status
+        return Status.INVALID
