@@ -11,9 +11,8 @@ from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
 from daidalos.navigation.errors import GoalOccupied, NoPath, PlannerError, PlanningCancelled, PlanningTimedOut
 from daidalos.navigation.paths import path_length, split_at_cusps
+from daidalos.navigation.planners.cost_to_go import costs_to_goal
 from daidalos.navigation.planners.curves import shortest_curve
-from daidalos.navigation.planners.hybrid_search import costs_to_goal
-from daidalos.navigation.planners.search import prices
 from daidalos.navigation.planners.smac_parameters import PathSmoothing
 from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid, SmacPlannerHybridParameters
 from properties import examples
@@ -159,9 +158,9 @@ def test_penalties_choose_how_to_drive():
     assert turns[1] <= turns[0] + 1e-6
 
 
-def furnished():
+def furnished(seed=3, edge=80, boxes=8):
     """Return a room with boxes, and a start and a goal in opposite corners."""
-    costmap, _ = cluttered(3, 80, 80, boxes=8)
+    costmap, _ = cluttered(seed, edge, edge, boxes)
     free = np.argwhere(costmap.costs == 0)
     start, goal = (np.array([*costmap.map_to_world(*cell[::-1]), 0.5]) for cell in (free[20], free[-20]))
     return costmap, start, goal
@@ -212,33 +211,17 @@ def test_estimates_are_kept_and_may_be_of_smaller_cells(monkeypatch):
     assert sizes == [(40, 40)] * 2 + [(80, 80)] * 2 + [(40, 40)]
 
 
-def test_costs_to_the_goal_are_those_of_the_best_way():
-    costs = np.zeros((30, 40), dtype=np.uint8)
-    costs[:25, 20] = 254
-    price = prices(1.0, 2.0, quadratic=False, allow_unknown=True)
-    rest = costs_to_goal(costs, price, 30, 5, 0.0, math.inf, 10, 5)
-    assert rest[5, 30] == 0.0
-    assert rest[5, 35] == pytest.approx(5.0)
-    assert rest[8, 33] == pytest.approx(3.0 * math.sqrt(2.0), rel=1e-5)
-    assert rest[5, 10] > 2.0 * math.hypot(10.0, 20.0) - 5.0
-    near = costs_to_goal(costs, price, 30, 5, 0.0, 0.0, 28, 5)
-    assert near[29, 0] < rest[29, 0]
-    costs[:, 20] = 254
-    assert not np.isfinite(costs_to_goal(costs, price, 30, 5, 0.0, 0.0, 10, 5)[5, 10])
-
-
 def test_smoothing_keeps_ends_and_shortens():
-    costmap, start, goal = furnished()
+    costmap, start, goal = furnished(2, 120, 14)
     rough = planner(smooth_path=False, minimum_turning_radius=0.2).create_plan(costmap, start, goal)
-    paths = []
+    lengths = []
     for smoother in ({"max_iterations": 1, "do_refinement": False}, {}):
         asked = planner(smoother=PathSmoothing(**smoother), minimum_turning_radius=0.2)
         path = asked.create_plan(costmap, start, goal)
         assert np.allclose(path[0], rough[0])
         assert np.allclose(path[-1], rough[-1])
-        paths.append(path)
-    assert path_length(rough) > max(map(path_length, paths))
-    assert not np.array_equal(*paths)
+        lengths.append(path_length(path))
+    assert path_length(rough) > lengths[0] + 1e-3 > lengths[1] + 1e-2
 
 
 def test_the_table_of_curves_has_its_size_and_changes_no_path_when_kept():

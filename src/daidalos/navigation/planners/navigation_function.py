@@ -52,7 +52,38 @@ def propagate(
     ndarray of float32, shape (height, width)
         The navigation function.
     """
+    return propagate_within(costs, step, start_column, start_row, goal_column, goal_row, bound, NO_ESTIMATE, 1)
+
+
+NO_ESTIMATE = np.zeros((0, 0), dtype=np.float32)
+"""In place of estimates: the straight distance."""
+
+
+@compiled
+def propagate_within(
+    costs: Costs,
+    step: Field,
+    start_column: int,
+    start_row: int,
+    goal_column: int,
+    goal_row: int,
+    bound: float,
+    rest: Field,
+    factor: int,
+) -> Field:
+    """Compute the navigation function as `propagate`, over cells that may lie on a way that costs less than a bound.
+
+    Parameters
+    ----------
+    costs, step, start_column, start_row, goal_column, goal_row, bound
+        As `propagate` has them.
+    rest : ndarray of float32, shape (coarse height, coarse width)
+        Cost from larger cells to the goal at least, in place of the straight distance; empty for that.
+    factor : int
+        Cells along the edge of one of these.
+    """
     height, width = costs.shape
+    has_rest = rest.size > 0
     value = np.full(height * width, np.inf, dtype=np.float32)
     following = np.empty(height * width, dtype=np.int32)
     preceding = np.empty(height * width, dtype=np.int32)
@@ -103,8 +134,10 @@ def propagate(
             better = _upwind(value, other, x, y, width, height, cost)
             if better >= value[other] - np.float32(1e-4):
                 continue
-            if bound < np.inf and better + math.hypot(x - goal_column, y - goal_row) > bound:
-                continue
+            if bound < np.inf:
+                left = rest[y // factor, x // factor] if has_rest else math.hypot(x - goal_column, y - goal_row)
+                if better + left > bound:
+                    continue
             value[other] = better
             bucket = int(better / BUCKET_WIDTH) % BUCKETS
             if bucket_of[other] == bucket:

@@ -14,6 +14,7 @@ from daidalos.navigation.contracts import GlobalPlanner, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.errors import GoalOccupied, NoPath, StartOccupied
 from daidalos.navigation.paths import is_driven_backwards, split_at_cusps
+from daidalos.navigation.planners.cost_to_go import cheapest_costs, costs_to_goal
 from daidalos.navigation.planners.hybrid_search import (
     CORNER,
     SPACING,
@@ -21,7 +22,6 @@ from daidalos.navigation.planners.hybrid_search import (
     HybridSearch,
     are_forbidden,
     blended,
-    costs_to_goal,
     stands_free,
 )
 from daidalos.navigation.planners.search import EXHAUSTED, FOUND, Prices, prices, run_search
@@ -167,13 +167,7 @@ class SmacPlannerHybrid(GlobalPlanner):
         key = (last, costmap.costs.shape, tuple(costmap.origin), factor, self.parameters)
         if p.cache_obstacle_heuristic and self._rest is not None and self._rest[0] == key:
             return self._rest[1], factor
-        costs = costmap.costs
-        if factor > 1:
-            height, width = (-(-edge // 2) * 2 for edge in costs.shape)
-            even = np.pad(costs, ((0, height - costs.shape[0]), (0, width - costs.shape[1])), mode="edge")
-            costs = np.ascontiguousarray(
-                np.minimum(np.minimum(even[::2, ::2], even[1::2, ::2]), np.minimum(even[::2, 1::2], even[1::2, 1::2]))
-            )
+        costs = cheapest_costs(costmap.costs, price, factor) if factor > 1 else costmap.costs
         margin = np.inf if p.cache_obstacle_heuristic else 4.0 * options.radius
         rest = factor * costs_to_goal(
             costs, price, last[0] // factor, last[1] // factor, options.reach / factor, margin,
