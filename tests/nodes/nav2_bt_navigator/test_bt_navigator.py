@@ -307,16 +307,32 @@ def test_an_error_of_a_route_is_reported_by_the_prefix_of_its_name(
         return ComputeRoute.Result(error_code=ComputeRoute.Result.NO_VALID_GRAPH, error_msg="there is no graph")
 
     ActionServer(test.node, ComputeRoute, "compute_route", abort)
-    for name, code in (("dock_route", 0), ("compute_route", ComputeRoute.Result.NO_VALID_GRAPH)):
+    for name in prefixes:
         file.write_text(file.read_text().replace("dock_route", name))
         navigator = test.add(BtNavigator())
         navigator.trigger_configure()
         navigator.trigger_activate()
         status, result = test.end(test.send(NavigateToPose, "navigate_to_pose", pose=pose(1.0)))
         assert (status, result.error_msg) == (GoalStatus.STATUS_ABORTED, "there is no graph")
-        assert result.error_code == code
+        assert result.error_code == ComputeRoute.Result.NO_VALID_GRAPH
         navigator.trigger_deactivate()
         navigator.trigger_cleanup()
+
+
+def test_scripts_see_the_number_of_an_error_and_their_own_errors_are_the_reason(bench: Bench, tmp_path: Path) -> None:
+    number = ComputePathToPose.Result.NO_VALID_PATH
+    follow = f'<FollowPath _skipIf="compute_path_error_code == {number} &amp;&amp; speed &gt; 1" path="{{path}}"'
+    text = TREE.replace("<Sequence>", "<Fallback>").replace("</Sequence>", "</Fallback>")
+    file = tmp_path / "scripts.xml"
+    file.write_text(text.replace('<FollowPath path="{path}"', follow))
+    handle = bench.send(pose(2.0), tree=str(file))
+    bench.stage.step_until(lambda: bool(bench.planner.handles))
+    bench.planner.end("abort", error_code=number, error_msg="no way leads there")
+    status, result = bench.stage.end(handle)
+    assert status == GoalStatus.STATUS_ABORTED
+    assert result.error_msg.startswith(f"{file}:7: ")
+    assert result.error_msg.endswith("there is no entry 'speed' on the blackboard")
+    assert not bench.controller.handles
 
 
 def test_a_server_that_is_not_there_is_named(stage: Callable[[dict[str, Any]], Stage], tree: Path) -> None:

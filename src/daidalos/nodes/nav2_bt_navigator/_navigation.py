@@ -34,12 +34,15 @@ class Navigation:
         Handle of the latest goal.
     ended : Future
         Done when the navigation is; the result is that of the latest goal.
+    fault : str
+        Error that ended the tree; empty where there was none.
     """
 
     def __init__(self, goal_handle: Any, tree: BehaviorTree, begun: Time) -> None:
         self.goal_handle = goal_handle
         self.begun = begun
         self.ended = Future()
+        self.fault = ""
         self._tree = tree
         self._set_goals(goal_handle.request)
 

@@ -186,8 +186,8 @@ class BtNavigator(ManagedNode):
                     self._publish_feedback(navigation, action)
                     await cycle.next()
             except TreeError as error:
-                self.get_logger().error(str(error))
                 navigation.halt()
+                navigation.fault = str(error)
                 return Status.FAILURE
         return status
 
@@ -211,7 +211,8 @@ class BtNavigator(ManagedNode):
         if status == Status.SUCCESS:
             self.get_logger().info("the goal is reached")
         elif status == Status.FAILURE:
-            result.error_code, result.error_msg = _reason(navigation.blackboard, self._settings.all_error_code_names)
+            reason = _reason(navigation.blackboard, self._settings.all_error_code_names)
+            result.error_code, result.error_msg = (0, navigation.fault) if navigation.fault else reason
             self.get_logger().error(f"the goal is given up: {result.error_msg}")
         else:
             self.get_logger().info("the goal was cancelled")
@@ -219,32 +220,13 @@ class BtNavigator(ManagedNode):
 
 def _reason(blackboard: Blackboard, names: tuple[str, ...]) -> tuple[int, str]:
     """Return the error code of the action that failed, as Nav2's results number it, and why it failed."""
-    from nav2_msgs import action
-
-    kinds = {
-        "compute_path": action.ComputePathThroughPoses if "goals" in blackboard else action.ComputePathToPose,
-        "follow_path": action.FollowPath,
-        "smoother": action.SmoothPath,
-        "compute_route": action.ComputeRoute,
-        "route": action.ComputeAndTrackRoute,
-        "dock_robot": action.DockRobot,
-        "undock_robot": action.UndockRobot,
-        "nav_to_pose": action.NavigateToPose,
-        "nav_thru_poses": action.NavigateThroughPoses,
-        "spin": action.Spin,
-        "backup": action.BackUp,
-        "drive_on_heading": action.DriveOnHeading,
-        "assisted_teleop": action.AssistedTeleop,
-        "wait": action.Wait,
-    }
     for name in names:
-        code = str(blackboard.get(name) or "NONE")
-        if code == "NONE":
+        code = blackboard.get(name)
+        if code in (None, 0, "NONE"):
             continue
-        kind = kinds.get(name.removesuffix("_error_code"))
-        number = 0 if kind is None else int(getattr(kind.Result, code, getattr(kind.Result, "UNKNOWN", 0)))
+        number = getattr(code, "number", code)
         text = blackboard.get(f"{name.removesuffix('_code')}_msg")
-        return number, str(text or f"{name} is {code}")
+        return number if isinstance(number, int) else 0, str(text or f"{name} is {code}")
     return 0, "no recovery helped"
 
 
