@@ -38,7 +38,7 @@ ALLOWED = {
     "nodes/slam_toolbox/_slam_toolbox.py": "start and waiting scans while simulated time stands still",
     "nodes/tf2_tools/view_frames.py": "the name of a file",
     "nodes/topic_tools/delay.py": "real time where the parameter use_wall_clock asks for it",
-    "nodes/nav2_lifecycle_manager/server_watch.py": "whether a process answers, in real time",
+    "nodes/nav2_lifecycle_manager/_server_watch.py": "whether a process answers, in real time",
     "nodes/topic_tools/throttle.py": "real time where the parameter use_wall_clock asks for it",
     "nodes/warming.py": "how long a person waits for the compiler",
     "simulation/conversion/preparation.py": "how long a person waits for a world to be loaded",

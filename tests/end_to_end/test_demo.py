@@ -72,7 +72,7 @@ def test_a_used_port_gives_the_next_one(domain: int) -> None:
 @pytest.mark.timeout(480)
 def test_other_commands_see_the_running_demonstration(domain: int) -> None:
     with Command(*DEMO, "--no-browser", domain=domain) as demo:
-        demo.wait_for_line("ready for scans")
+        demo.wait_for_line(UP)
         topics = finished(*ROS2, "topic", "list", domain=domain).stdout.split()
         assert {"/clock", "/scan", "/odom", "/tf", "/tf_static", "/map", "/cmd_vel", "/plan"} <= set(topics)
         assert "/global_costmap/costmap" in topics

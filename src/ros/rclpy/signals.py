@@ -82,10 +82,19 @@ def watch_context(context: Context) -> None:
 _REPEAT_INTERVAL_S = 0.5
 _last_signal_s = -math.inf
 
+_IMPORT_MACHINERY = "<frozen importlib._bootstrap>"
+_DEFERRAL_S = 0.01
+_deferred: set[int] = set()
+
 
 @signal_watch.watched
 def _on_signal(number: int, frame: FrameType | None) -> None:
     global _last_signal_s
+    if number in _deferred:
+        _deferred.discard(number)
+        if not is_uninterrupted():
+            _pass_on(number, frame)
+        return
     now = time.monotonic()
     if is_uninterrupted() or now - _last_signal_s < _REPEAT_INTERVAL_S:
         return  # the terminal and the launcher pass on the same Ctrl-C
@@ -94,12 +103,32 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
         context.shutdown_by_signal()
     for guard in list(_guards):
         guard.trigger()
+    _pass_on(number, frame)
+
+
+def _pass_on(number: int, frame: FrameType | None) -> None:
+    """Call the handler that was there before, which raises KeyboardInterrupt if it is Python's own.
+
+    Not between two steps of Python's import system: it holds a lock then that it would not release any more, and
+    every other thread that imports something would wait for ever.
+    """
+    if frame is not None and frame.f_code.co_filename == _IMPORT_MACHINERY and hasattr(signal, "pthread_kill"):
+        _deferred.add(number)
+        threading.Thread(target=_send_again, args=(number,), name="signal again", daemon=True).start()
+        return
     previous = _previous.get(number)
     if number == signal.SIGINT and previous == signal.SIG_DFL:
         # Nobody had set a handler that stands in for Python's own, only kept it quiet while modules were imported.
         previous = signal.default_int_handler
     if callable(previous):
         previous(number, frame)
+
+
+def _send_again(number: int) -> None:
+    time.sleep(_DEFERRAL_S)
+    main = threading.main_thread().ident
+    if number in _deferred and main is not None:
+        signal.pthread_kill(main, number)
 
 
 def _quiet_excepthook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from types import FrameType
 
@@ -58,6 +59,24 @@ def test_what_is_asked_again_later_is_passed_on_again(raised: list[int], monkeyp
         signal.raise_signal(signal.SIGINT)
         monkeypatch.setattr(signals, "_last_signal_s", -1e9)
     assert raised == [signal.SIGINT, signal.SIGINT]
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals are not sent to threads here")
+def test_the_import_system_is_not_broken_off(raised: list[int]) -> None:
+    source = (
+        "def step(raised):\n"
+        "    signal.raise_signal(signal.SIGINT)\n"
+        "    return list(raised)  # it would hold a lock here\n"
+    )
+    names = {"signal": signal}
+    exec(compile(source, "<frozen importlib._bootstrap>", "exec"), names)
+    rclpy.init(args=[])
+    assert names["step"](raised) == []
+    assert not rclpy.ok()
+    deadline = time.monotonic() + 60.0
+    while not raised and time.monotonic() < deadline:
+        signal.sigtimedwait([], 0.01)
+    assert raised == [signal.SIGINT]
 
 
 def test_leaving_the_graph_is_not_broken_off(raised: list[int]) -> None:

@@ -10,7 +10,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.nodes.nav2_lifecycle_manager.server_watch import WATCH_PERIOD_S, ServerWatch, stop_robot
+from daidalos.nodes.nav2_lifecycle_manager._server_watch import WATCH_PERIOD_S, ServerWatch, stop_robot
 from daidalos.nodes.parameters import declare
 
 _INACTIVE, _ACTIVE = 2, 3
