@@ -55,7 +55,7 @@ class Sleep(Node):
     PORTS: ClassVar[dict[str, Port]] = {"msec": Port(int)}
 
     def initialise(self) -> None:
-        """Note the time."""
+        """Store the time of the start."""
         self._since = self.services.now()
 
     def update(self) -> Status:
