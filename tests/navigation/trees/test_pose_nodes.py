@@ -242,3 +242,28 @@ def test_a_truncated_path_looks_along_its_last_step():
     robot.run(tree)
     q = tree.blackboard.get("cut").poses[-1].pose.orientation
     assert 2.0 * math.atan2(q.z, q.w) == pytest.approx(0.0)
+
+
+def test_a_goal_is_nearby_where_little_of_the_path_is_left():
+    robot = ScriptedRobot()
+    tree = build(robot, '<IsGoalNearby path="{path}" proximity_threshold="1.5"/>', path=path_of(0, 1, 2, 3, 4))
+    states = []
+    for x in (0.0, 2.4, 2.6, 4.0):
+        robot.pose = np.array([x, 0.3, 0.0])
+        states.append(robot.run(tree))
+    assert states == ["FAILURE", "FAILURE", "SUCCESS", "SUCCESS"]
+    robot.pose = None
+    assert robot.run(tree) == "FAILURE"
+    assert robot.run(build(robot, '<IsGoalNearby path="{path}"/>', path=path_of())) == "FAILURE"
+
+
+def test_a_path_that_comes_back_to_its_begin_is_searched_from_the_last_pose_on():
+    robot = ScriptedRobot()
+    inside = '<IsGoalNearby path="{path}" max_robot_pose_search_dist="1.5"/>'
+    loop = path_of(0.1, 1, 2, 1, 0)
+    tree = build(robot, inside, path=loop)
+    states = []
+    for x in (0.0, 1.0, 2.0, 1.0, 0.0):
+        robot.pose = np.array([x, 0.0, 0.0])
+        states.append(robot.run(tree))
+    assert states == ["FAILURE", "FAILURE", "FAILURE", "FAILURE", "SUCCESS"]

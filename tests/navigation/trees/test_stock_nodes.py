@@ -231,3 +231,52 @@ def test_a_precondition_is_a_script(more, status):
     assert outcome(f'<Precondition if="n == 1" {more}><Wait/></Precondition>', n=1) == ("SUCCESS", ["Wait"])
     with pytest.raises(TreeError, match="else must be one of SUCCESS, FAILURE"):
         build(ScriptedRobot(), '<Precondition if="1" else="MAYBE"><Wait/></Precondition>')
+
+
+@pytest.mark.parametrize(
+    ("node", "queue", "values"),
+    [
+        ("LoopInt", "1;2", [1, 2]),
+        ("LoopDouble", "0.5; 2", [0.5, 2.0]),
+        ("LoopString", "a;b", ["a", "b"]),
+        ("LoopBool", "true;false", [True, False]),
+    ],
+)
+def test_a_loop_ticks_its_child_for_each_value(node, queue, values):
+    robot = ScriptedRobot(Wait=[(1, SUCCESS)])
+    inside = f'<{node} queue="{queue}" value="{{v}}" if_empty="FAILURE"><Wait/></{node}>'
+    tree = build(robot, inside)
+    for _ in range(2):
+        seen = []
+        while robot.run(tree) == "RUNNING":
+            seen.append(tree.blackboard.get("v"))
+        assert seen == [value for value in values for _ in range(2)]
+        assert tree.status.name == "FAILURE"
+
+
+def test_a_loop_empties_a_list_of_the_blackboard_and_fails_with_its_child():
+    queue = [1, 2, 3]
+    inside = '<LoopInt queue="{queue}" value="{v}"><ScriptCondition code="v &lt; 2"/></LoopInt>'
+    assert outcome(inside, ticks=9, queue=queue)[0] == "FAILURE"
+    assert queue == [3]
+    assert outcome(inside, queue=[])[0] == "SUCCESS"
+    with pytest.raises(TreeError, match="the port 'queue' must be a queue, not '1;b'"):
+        build(ScriptedRobot(), '<LoopInt queue="1;b" value="{v}"><Wait/></LoopInt>')
+    with pytest.raises(TreeError, match="if_empty must be one of SUCCESS, FAILURE, SKIPPED, not 'NONE'"):
+        build(ScriptedRobot(), '<LoopInt queue="1" if_empty="NONE" value="{v}"><Wait/></LoopInt>')
+
+
+@pytest.mark.parametrize(
+    ("inside", "states"),
+    [
+        ('<WasEntryUpdated entry="{n}"/>', ["SUCCESS", "FAILURE", "SUCCESS"]),
+        ('<SkipUnlessUpdated entry="n"><Wait/></SkipUnlessUpdated>', ["SUCCESS", "FAILURE", "SUCCESS"]),
+        ('<WaitValueUpdate entry="{n}"><Wait/></WaitValueUpdate>', ["SUCCESS", "RUNNING", "SUCCESS"]),
+    ],
+)
+def test_writes_to_an_entry_are_noticed_once(inside, states):
+    robot = ScriptedRobot()
+    tree = build(robot, inside, n=1)
+    assert [robot.run(tree), robot.run(tree)] == states[:2]
+    tree.blackboard.set("n", 1)
+    assert robot.run(tree) == states[2]

@@ -33,6 +33,7 @@ class Blackboard:
         self._remapped = dict(remapped or {})
         self._autoremap = autoremap
         self._values: dict[str, Any] = {}
+        self._revisions: dict[str, int] = {}
 
     def get(self, name: str, default: Any = None) -> Any:
         """Return the value of a name, or the default."""
@@ -43,6 +44,12 @@ class Blackboard:
         """Write a value."""
         board, own = self._owner(name)
         board._values[own] = value
+        board._revisions[own] = board._revisions.get(own, 0) + 1
+
+    def revision(self, name: str) -> int:
+        """Return how many times a name was written."""
+        board, own = self._owner(name)
+        return board._revisions.get(own, 0)
 
     def remove(self, name: str) -> None:
         """Remove a value, if there is one."""

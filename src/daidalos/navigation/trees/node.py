@@ -102,6 +102,10 @@ class Ports:
             return self._read(key, value) if isinstance(value, str) and port.kind is not entry else value
         return self._values.get(key, self._declared[key].default)
 
+    def is_bound(self, key: str) -> bool:
+        """Return whether the file binds a port to a name of the blackboard."""
+        return key in self._names
+
     def name_of(self, key: str) -> str:
         """Return the name of the blackboard that an input gives, in braces or without."""
         return self._names.get(key) or str(self.get(key))

@@ -3,8 +3,10 @@
 from math import hypot
 from typing import Any, ClassVar
 
+import numpy as np
 from py_trees.common import Status
 
+from daidalos.navigation.paths import distances_along
 from daidalos.navigation.trees.node import Node, Port, Ports, TreeContext, entry
 
 _FRAMES = {"global_frame": Port(str, ""), "robot_base_frame": Port(str, "")}
@@ -25,6 +27,42 @@ class GoalReached(Node):
             return Status.FAILURE
         near = hypot(*(wanted - robot)[:2]) <= self.ports.get("goal_reached_tol")
         return Status.SUCCESS if near else Status.FAILURE
+
+
+class IsGoalNearby(Node):
+    """Condition node that succeeds while less than `proximity_threshold` [m] of a path is ahead of the robot.
+
+    The pose of the path that is nearest to the robot is searched for from the last one on, over
+    `max_robot_pose_search_dist` [m]; over the whole path where that is negative, or the path is another one.
+    """
+
+    names = ("IsGoalNearby",)
+    PORTS: ClassVar[dict[str, Port]] = {
+        "path": Port(entry),
+        "proximity_threshold": Port(float, 1.0),
+        "max_robot_pose_search_dist": Port(float, -1.0),
+        **_FRAMES,
+    }
+    _path: Any = None
+    _nearest = 0
+
+    def update(self) -> Status:
+        """Measure the rest of the path; fail where there is none, or the robot's pose is not known."""
+        path = self.ports.get("path")
+        if path is None or not path.poses:
+            return Status.FAILURE
+        robot = self.services.robot_pose(path.header.frame_id, self.ports.get("robot_base_frame"))
+        if robot is None:
+            return Status.FAILURE
+        points = np.array([(pose.pose.position.x, pose.pose.position.y) for pose in path.poses])
+        along = distances_along(points)
+        reach = self.ports.get("max_robot_pose_search_dist")
+        first = self._nearest if path is self._path and reach >= 0.0 else 0
+        last = int(np.searchsorted(along, along[first] + reach, side="right")) if reach >= 0.0 else along.size
+        away = np.hypot(*(points[first : max(last, first + 1)] - robot[:2]).T)
+        self._path, self._nearest = path, first + int(np.argmin(away))
+        is_nearby = along[-1] - along[self._nearest] < self.ports.get("proximity_threshold")
+        return Status.SUCCESS if is_nearby else Status.FAILURE
 
 
 class ArePosesNear(Node):
