@@ -11,6 +11,12 @@ from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, Cos
 
 Field = NDArray[np.float32]
 
+NOT_WAITING = -2
+"""In place of the following cell of one that is in no bucket; the last one of a bucket has -1."""
+
+LARGEST_DELAY = 2.0
+"""How much a value may be below that of the bucket where it waits: the share that a second side takes off a step."""
+
 MAX_DETOUR_RATIO = 0.1
 """Distance in cells by which a cell must be nearer to the goal for each step that its path is longer."""
 
@@ -31,9 +37,9 @@ def propagate(
 ) -> Field:
     """Compute the cost of the best path from the start to each cell, in steps over free space; infinite without one.
 
-    Solves `|grad u| = step` with upwind differences. Cells wait in buckets of equal value (Dial 1969), each a
-    doubly linked list through the cells, and are taken up again when a better value turns up; so the order
-    inside of a bucket does not change the result.
+    Solves `|grad u| = step` with upwind differences (Godunov's scheme). Cells wait in buckets of equal value (Dial
+    1969), each a linked list through the cells, and are taken up again when a better value turns up; so the order
+    inside of a bucket does not change the result. A cell whose value gets better while it waits stays in its bucket.
 
     Parameters
     ----------
@@ -83,124 +89,59 @@ def propagate_within(
         Cells along the edge of one of these.
     """
     height, width = costs.shape
+    stride = width + 2
     has_rest = rest.size > 0
-    value = np.full(height * width, np.inf, dtype=np.float32)
-    following = np.empty(height * width, dtype=np.int32)
-    preceding = np.empty(height * width, dtype=np.int32)
-    bucket_of = np.full(height * width, -1, dtype=np.int8)
+    price = np.full((height + 2) * stride, np.inf, dtype=np.float32)  # with a border, so that each cell has neighbours
+    for row in range(height):
+        for column in range(width):
+            price[(row + 1) * stride + column + 1] = step[costs[row, column]]
+    value = np.full(price.size, np.inf, dtype=np.float32)
+    following = np.full(price.size, NOT_WAITING, dtype=np.int32)
     head = np.full(BUCKETS, -1, dtype=np.int32)
-    flat = costs.ravel()
-    start = start_row * width + start_column
-    goal = goal_row * width + goal_column
+    start = (start_row + 1) * stride + start_column + 1
+    goal = (goal_row + 1) * stride + goal_column + 1
     value[start] = 0.0
     current = 0
-    _put(head, following, preceding, bucket_of, start, current)
+    head[0] = start
+    following[start] = -1
     waiting = 1
     while waiting > 0:
         cell = head[current % BUCKETS]
         if cell < 0:
             current += 1
-            if current * BUCKET_WIDTH > value[goal]:
+            if current * BUCKET_WIDTH > value[goal] + LARGEST_DELAY:
                 break
             continue
-        _take(head, following, preceding, bucket_of, cell)
+        head[current % BUCKETS] = following[cell]
+        following[cell] = NOT_WAITING
         waiting -= 1
-        row = cell // width
-        column = cell - row * width
-        for side in range(4):
-            if side == 0:
-                if column == 0:
-                    continue
-                other = cell - 1
-            elif side == 1:
-                if column == width - 1:
-                    continue
-                other = cell + 1
-            elif side == 2:
-                if row == 0:
-                    continue
-                other = cell - width
-            else:
-                if row == height - 1:
-                    continue
-                other = cell + width
-            if not value[cell] < value[other]:
+        here = value[cell]
+        for other in (cell - 1, cell + 1, cell - stride, cell + stride):
+            cost = price[other]
+            if cost == np.inf or not here < value[other]:
                 continue
-            cost = step[flat[other]]
-            if cost == np.inf:
-                continue
-            y = other // width
-            x = other - y * width
-            better = _upwind(value, other, x, y, width, height, cost)
+            a = min(value[other - 1], value[other + 1])
+            b = min(value[other - stride], value[other + stride])
+            low, high = min(a, b), max(a, b)
+            apart = high - low
+            better = low + cost
+            if apart < cost:
+                better = np.float32(0.5) * (low + high + np.sqrt(np.float32(2.0) * cost * cost - apart * apart))
             if better >= value[other] - np.float32(1e-4):
                 continue
             if bound < np.inf:
+                y = other // stride - 1
+                x = other - (y + 1) * stride - 1
                 left = rest[y // factor, x // factor] if has_rest else math.hypot(x - goal_column, y - goal_row)
                 if better + left > bound:
                     continue
             value[other] = better
-            bucket = int(better / BUCKET_WIDTH) % BUCKETS
-            if bucket_of[other] == bucket:
-                continue
-            if bucket_of[other] >= 0:
-                _take(head, following, preceding, bucket_of, other)
-                waiting -= 1
-            _put(head, following, preceding, bucket_of, other, bucket)
-            waiting += 1
-    return value.reshape(height, width)
-
-
-@compiled
-def _upwind(value: Field, cell: int, column: int, row: int, width: int, height: int, cost: float) -> np.float32:
-    """Return the value of a cell from its lowest neighbour on each axis (Godunov's scheme)."""
-    infinity = np.float32(np.inf)
-    west = value[cell - 1] if column > 0 else infinity
-    east = value[cell + 1] if column < width - 1 else infinity
-    south = value[cell - width] if row > 0 else infinity
-    north = value[cell + width] if row < height - 1 else infinity
-    a = min(west, east)
-    b = min(south, north)
-    low, high = min(a, b), max(a, b)
-    apart = high - low
-    if apart >= cost:
-        return np.float32(low + cost)
-    return np.float32(0.5 * (low + high + math.sqrt(2.0 * cost * cost - apart * apart)))
-
-
-@compiled
-def _put(
-    head: NDArray[np.int32],
-    following: NDArray[np.int32],
-    preceding: NDArray[np.int32],
-    bucket_of: NDArray[np.int8],
-    cell: int,
-    bucket: int,
-) -> None:
-    second = head[bucket]
-    following[cell] = second
-    preceding[cell] = -1
-    if second >= 0:
-        preceding[second] = cell
-    head[bucket] = cell
-    bucket_of[cell] = bucket
-
-
-@compiled
-def _take(
-    head: NDArray[np.int32],
-    following: NDArray[np.int32],
-    preceding: NDArray[np.int32],
-    bucket_of: NDArray[np.int8],
-    cell: int,
-) -> None:
-    before, after = preceding[cell], following[cell]
-    if before >= 0:
-        following[before] = after
-    else:
-        head[bucket_of[cell]] = after
-    if after >= 0:
-        preceding[after] = before
-    bucket_of[cell] = -1
+            if following[other] == NOT_WAITING:
+                bucket = max(int(better / BUCKET_WIDTH), current) % BUCKETS
+                following[other] = head[bucket]
+                head[bucket] = other
+                waiting += 1
+    return value.reshape(height + 2, stride)[1:-1, 1:-1].copy()
 
 
 @compiled
