@@ -18,14 +18,7 @@ from daidalos.navigation.costmap.costmap import (
 )
 from daidalos.navigation.errors import GoalOccupied, NoPath
 from daidalos.navigation.paths import with_headings
-from daidalos.navigation.planners.cost_to_go import cheapest_costs, costs_to_goal
-from daidalos.navigation.planners.navigation_function import (
-    NO_ESTIMATE,
-    descend,
-    nearest_reached,
-    propagate,
-    propagate_within,
-)
+from daidalos.navigation.planners.navigation_function import descend, nearest_reached, propagate
 from daidalos.navigation.planners.terminals import Cell, goal_cell, start_cell, way_out, words
 
 COST_FACTOR = 0.8 / 50.0
@@ -34,15 +27,6 @@ COST_FACTOR = 0.8 / 50.0
 The proportion of Nav2's neutral cost (50) and cost factor (0.8), so that tuned inflation radii keep their
 effect.
 """
-
-COARSE = 4
-"""Edge of the larger cells of estimates, in cells; walls that are inflated are thicker."""
-
-LOWER = 0.92
-"""Ratio of a straight way to one along eight directions at most, cos(pi / 8), by which estimates are lower."""
-
-FIRST_BOUND = 1.1
-"""Ratio of the first bound to the estimate; most ways cost less."""
 
 OBSTACLE_SKIN = 0.1
 """Assumed depth [m] of obstacles behind the surface that sensors see; goals there are rejected."""
@@ -104,32 +88,18 @@ class NavfnPlanner(GlobalPlanner):
     def _potential(self, costmap: Costmap, step: NDArray[np.float32], entry: Cell, last: Cell) -> NDArray[np.float32]:
         """Compute the navigation function from the start, at least up to the goal if it is reachable.
 
-        The wavefront is bounded by what the way to the goal costs at least: by the straight distance with A*, and by
-        the best way over larger cells with Dijkstra's algorithm. The bound is raised until the goal is reached. That
-        keeps the wavefront's order and with it smooth paths, which sorting cells by the promised total, as A* does on
-        a graph, would not.
+        With A* the wavefront is bounded by the cost that the straight distance promises, which is raised
+        until the goal is reached. That keeps the wavefront's order and with it smooth paths, which sorting
+        cells by the promised total, as A* does on a graph, would not.
         """
-        ends = (*entry, *last)
-        if self.parameters.use_astar:
-            rest, bound, limit = NO_ESTIMATE, 1.2 * math.hypot(entry[0] - last[0], entry[1] - last[1]) + 10.0, 10.0
-        else:
-            rest = self._estimates(costmap, step, entry, last)
-            bound, limit = FIRST_BOUND * float(rest[entry[1] // COARSE, entry[0] // COARSE]) + 10.0, 3.0
-        highest = limit * bound
-        while math.isfinite(bound) and bound < highest:
-            potential = propagate_within(costmap.costs, step, *ends, bound, rest, COARSE)
-            if potential[last[1], last[0]] <= bound:
+        bound = 1.2 * math.hypot(entry[0] - last[0], entry[1] - last[1]) + 10.0
+        highest = 10.0 * bound if self.parameters.use_astar else 0.0
+        while bound < highest:
+            potential = propagate(costmap.costs, step, entry[0], entry[1], last[0], last[1], bound)
+            if np.isfinite(potential[last[1], last[0]]):
                 return potential
-            bound *= 1.6 if self.parameters.use_astar else 1.1
-        return propagate(costmap.costs, step, *ends, math.inf)
-
-    def _estimates(self, costmap: Costmap, step: NDArray[np.float32], entry: Cell, last: Cell) -> NDArray[np.float32]:
-        """Return what the way to the goal costs at least, over larger cells of the lowest cost in each."""
-        coarse = cheapest_costs(costmap.costs, step, COARSE)
-        ends = (entry[0] // COARSE, entry[1] // COARSE)
-        rest = costs_to_goal(coarse, step, last[0] // COARSE, last[1] // COARSE, 0.0, 0.0, *ends)
-        rest *= COARSE * LOWER
-        return rest
+            bound *= 1.6
+        return propagate(costmap.costs, step, entry[0], entry[1], last[0], last[1], math.inf)
 
     def _step_costs(self) -> NDArray[np.float32]:
         """Return the cost of a step over a cell of each value, in units of a step over free space."""

@@ -58,39 +58,8 @@ def propagate(
     ndarray of float32, shape (height, width)
         The navigation function.
     """
-    return propagate_within(costs, step, start_column, start_row, goal_column, goal_row, bound, NO_ESTIMATE, 1)
-
-
-NO_ESTIMATE = np.zeros((0, 0), dtype=np.float32)
-"""In place of estimates: the straight distance."""
-
-
-@compiled
-def propagate_within(
-    costs: Costs,
-    step: Field,
-    start_column: int,
-    start_row: int,
-    goal_column: int,
-    goal_row: int,
-    bound: float,
-    rest: Field,
-    factor: int,
-) -> Field:
-    """Compute the navigation function as `propagate`, over cells that may lie on a way that costs less than a bound.
-
-    Parameters
-    ----------
-    costs, step, start_column, start_row, goal_column, goal_row, bound
-        As `propagate` has them.
-    rest : ndarray of float32, shape (coarse height, coarse width)
-        Cost from larger cells to the goal at least, in place of the straight distance; empty for that.
-    factor : int
-        Cells along the edge of one of these.
-    """
     height, width = costs.shape
     stride = width + 2
-    has_rest = rest.size > 0
     price = np.full((height + 2) * stride, np.inf, dtype=np.float32)  # with a border, so that each cell has neighbours
     for row in range(height):
         for column in range(width):
@@ -132,8 +101,7 @@ def propagate_within(
             if bound < np.inf:
                 y = other // stride - 1
                 x = other - (y + 1) * stride - 1
-                left = rest[y // factor, x // factor] if has_rest else math.hypot(x - goal_column, y - goal_row)
-                if better + left > bound:
+                if better + math.hypot(x - goal_column, y - goal_row) > bound:
                     continue
             value[other] = better
             if following[other] == NOT_WAITING:
