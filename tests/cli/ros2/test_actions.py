@@ -79,3 +79,16 @@ def test_ctrl_c_cancels_the_goal(env, server):
     assert "Traceback" not in told
     assert process.returncode == 2
     assert server.stdout.readline() == "canceled\n"
+
+
+@pytest.mark.slow
+def test_an_action_that_is_not_there_is_waited_for_with_a_hint(env, server):
+    command = [*ROS2, "action", "send_goal", "/lab/fibonaci", TYPE]
+    process = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stderr.readline() == "Did you mean '/lab/fibonacci'?\n"
+        assert process.stdout.readline() == "Waiting for an action server to become available...\n"
+        assert process.poll() is None
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
