@@ -75,6 +75,21 @@ def test_no_sampled_curve_is_shorter(data, both):
     assert shortest_curve(*at, both)[0] <= np.abs(lengths).sum() + 1e-6
 
 
+@pytest.mark.parametrize("turn", [-1.0, 1.0])
+@pytest.mark.parametrize("length", [0.3, 2.0493000298449142, 3.9, 6.1])
+def test_one_arc_is_its_own_shortest_curve_forwards(turn, length):
+    assert shortest_curve(*moved(0.0, 0.0, 0.0, turn, length), False)[0] == pytest.approx(length, abs=1e-6)
+
+
+@pytest.mark.parametrize("words", [((-1.0, 1.0), (1.0, 2.0)), ((1.0, -1.0), (1.0, 0.5)), ((1.0, -1.0), (2.9, 2.9))])
+def test_two_arcs_without_a_straight_part_are_found(words):
+    at = (0.0, 0.0, 0.0)
+    for turn, length in zip(*words, strict=True):
+        at = moved(*at, turn, length)
+    for both in (False, True):
+        assert shortest_curve(*at, both)[0] <= sum(words[1]) + 1e-6
+
+
 def test_a_grid_of_words_finds_no_shorter_reeds_shepp_curve():
     """Sample three-segment curves on a grid of lengths, keep those near one pose, and compare with the curve there."""
     steps = np.linspace(-math.pi, math.pi, 13)

@@ -53,8 +53,8 @@ def test_lengths_are_those_of_a_visibility_graph(seed):
             planner().create_plan(costmap, start, goal)
         return
     path = planner().create_plan(costmap, start, goal)
-    assert least - 1e-9 <= path_length(path) <= 1.01 * least + 1e-9
-    assert is_free(costmap, path)
+    assert path_length(path) <= 1.01 * least + 1e-9
+    assert is_free(costmap, path)  # between centres of cells there may be shorter ways
 
 
 @examples(20)

@@ -37,6 +37,10 @@ TURNS: NDArray[np.float64] = np.array(
 )
 
 
+ROUNDING = 5e-7
+"""Angle [rad] below which a negative angle is a rounded zero: roots double the number of digits that are lost."""
+
+
 @compiled
 def shortest_curve(x: float, y: float, yaw: float, is_reverse_allowed: bool) -> tuple[float, Array, Array]:
     """Return length, turns (5,) and signed lengths (5,) of the shortest curve from the origin to a pose.
@@ -108,7 +112,7 @@ def _wrapped(angle: float, is_signed: bool) -> float:
     if is_signed:
         return remainder(angle)
     angle = angle % (2.0 * math.pi)
-    return 0.0 if angle > 2.0 * math.pi - 1e-9 else angle
+    return 0.0 if angle > 2.0 * math.pi - ROUNDING else angle
 
 
 @compiled
@@ -135,18 +139,19 @@ def _word(word: int, x: float, y: float, yaw: float, signed: bool, lengths: Arra
     rho = math.hypot(xi, eta)
     theta = math.atan2(eta, xi)
     if word == 0:
-        t = _wrapped(theta, signed)
+        # One arc alone: the direction of a straight part without length means nothing.
+        t = _wrapped(yaw, signed) if rho < 1e-7 else _wrapped(theta, signed)
         lengths[0], lengths[1], lengths[2] = t, rho, _wrapped(yaw - t, signed)
     elif word == 1:
-        if rho < 2.0:
+        if rho < 2.0 - 1e-9:
             return False
-        u = math.sqrt(rho * rho - 4.0)
+        u = math.sqrt(max(rho * rho - 4.0, 0.0))
         t = _wrapped(theta + math.atan2(2.0, u), signed)
         lengths[0], lengths[1], lengths[2] = t, u, _wrapped(t - yaw, signed)
     elif word == 2 or word == 3 or word == 11:
-        if rho > 4.0:
+        if rho > 4.0 + 1e-9:
             return False
-        u = -2.0 * math.asin(0.25 * rho)
+        u = -2.0 * math.asin(min(0.25 * rho, 1.0))
         t = _wrapped(theta + 0.5 * u + math.pi, signed)
         v = _wrapped(yaw - t + u, signed)
         if word == 3:
@@ -166,10 +171,10 @@ def _word(word: int, x: float, y: float, yaw: float, signed: bool, lengths: Arra
         u = -math.acos(share)
         t, v = _tau_omega(u, u, xi, eta, yaw)
         lengths[0], lengths[1], lengths[2], lengths[3] = t, u, u, v
-    elif rho < 2.0:
+    elif rho < 2.0 - 1e-9:
         return False
     elif word == 6 or word == 8:
-        r = math.sqrt(rho * rho - 4.0)
+        r = math.sqrt(max(rho * rho - 4.0, 0.0))
         t = _wrapped(theta + math.atan2(r, -2.0), True)
         v = _wrapped(yaw - HALF - t, True)
         if word == 6:
@@ -184,7 +189,7 @@ def _word(word: int, x: float, y: float, yaw: float, signed: bool, lengths: Arra
         else:
             lengths[0], lengths[1], lengths[2], lengths[3] = v, 2.0 - rho, -HALF, t
     else:
-        u = 4.0 - math.sqrt(rho * rho - 4.0)
+        u = 4.0 - math.sqrt(max(rho * rho - 4.0, 0.0))
         t = _wrapped(math.atan2((4.0 - u) * xi - 2.0 * eta, -2.0 * xi + (u - 4.0) * eta), True)
         lengths[0], lengths[1], lengths[2], lengths[3], lengths[4] = t, -HALF, u, -HALF, _wrapped(t - yaw, True)
     return True
