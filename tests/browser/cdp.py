@@ -190,7 +190,7 @@ class Chromium:
         self.drag([(x, y)], count=count)
 
     def click_on(self, selector: str, count: int = 1) -> None:
-        """Click the middle of an element, once it stands still and nothing lies over it."""
+        """Click the middle of an element, once it is enabled, stands still and nothing lies over it."""
         place = self.wait_for(
             f"""(async () => {{
                 const element = document.querySelector({selector!r});
@@ -201,7 +201,7 @@ class Chromium:
                 const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
                 const stands = box.width && box.x === before.x && box.y === before.y;
                 const hit = document.elementFromPoint(x, y);
-                return stands && hit && (element.contains(hit) || hit.contains(element)) && {{ x, y }};
+                return stands && !element.matches(":disabled") && hit && (element.contains(hit) || hit.contains(element)) && {{ x, y }};
             }})()"""
         )
         self.click(place["x"], place["y"], count)
