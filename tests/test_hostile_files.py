@@ -244,6 +244,7 @@ def read(reader: Reader, path: Path) -> None:
     assert len(text) < 2_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("reader", "name", "data"), _cases())
 def test_a_hostile_file_ends_in_one_line(tmp_path: Path, reader: Reader, name: str, data: bytes) -> None:
     folder = tmp_path / "a"

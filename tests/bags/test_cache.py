@@ -23,6 +23,7 @@ def fail(error):
     raise AssertionError(error)
 
 
+@pytest.mark.slow
 def test_everything_arrives_in_order(tmp_path):
     writer = bag(tmp_path / "bag")
     thread = WriterThread(writer, 0, fail)

@@ -201,7 +201,8 @@ class Chromium:
                 const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
                 const stands = box.width && box.x === before.x && box.y === before.y;
                 const hit = document.elementFromPoint(x, y);
-                return stands && !element.matches(":disabled") && hit && (element.contains(hit) || hit.contains(element)) && {{ x, y }};
+                const isHit = hit && (element.contains(hit) || hit.contains(element));
+                return stands && isHit && !element.matches(":disabled") && {{ x, y }};
             }})()"""
         )
         self.click(place["x"], place["y"], count)

@@ -33,6 +33,7 @@ def test_an_unknown_verb_is_named_with_the_nearest(capsys: pytest.CaptureFixture
     assert capsys.readouterr().err.endswith("Did you mean 'demo'?\n")
 
 
+@pytest.mark.slow
 def test_all_kinds_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["extensions"]) == 0
     shown = capsys.readouterr().out

@@ -28,6 +28,7 @@ def write_relations(path: Path, bag_offset_s: float = 0.0) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_bag_becomes_the_files_of_map_server(bag: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     relations = write_relations(tmp_path / "truth.relations")
     trajectory = tmp_path / "tour.tum"
@@ -126,6 +127,7 @@ def test_a_resolution_that_is_none_is_refused(bag: Path, capsys: pytest.CaptureF
     assert "--resolution" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_trajectories_are_compared(
     bag: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

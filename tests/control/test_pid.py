@@ -64,6 +64,7 @@ def test_antiwindup_overshoots_far_less(strategy: str) -> None:
     assert overshoot(strategy) < 0.3 * overshoot("none")
 
 
+@pytest.mark.slow
 def test_back_calculation_follows_its_differential_equation() -> None:
     gains = Gains(i=2.0, u_clamp_max=1.0, antiwindup_strategy="back_calculation", tracking_time_constant=0.5)
     pid, period = Pid([gains]), 1e-4

@@ -132,6 +132,7 @@ def test_values(evaluate, text, value):
     assert evaluate(text) == value
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", HOSTILE)
 def test_what_reaches_beyond_values_or_grows_is_refused(evaluate, text):
     with pytest.raises(ENDS):

@@ -19,6 +19,7 @@ SHAPES = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
 def test_solids_against_trimesh(shape):
     mesh = triangles_of(shape, segments=400)

@@ -3,11 +3,14 @@
 import ast
 import re
 
+import pytest
+
 from places import REPOSITORY
 
 _TEST = re.compile(r"`(tests/[\w/]+\.py)(?:::(\w+))?`")
 
 
+@pytest.mark.slow
 def test_every_threat_names_a_test() -> None:
     page = (REPOSITORY / "docs" / "security.md").read_text(encoding="utf-8")
     tables = re.findall(r"\| test \|\n\|[-|]+\n((?:\|.*\n)+)", page)

@@ -2,6 +2,8 @@
 
 import sys
 
+import pytest
+
 from end_to_end.processes import ROS2, Command, finished
 
 MANY = 400
@@ -17,6 +19,7 @@ rclpy.spin(node)
 """
 
 
+@pytest.mark.slow
 def test_all_topics_of_a_big_graph_are_listed(domain: int) -> None:
     with Command(sys.executable, "-c", NODE, domain=domain) as node:
         node.wait_for_line("ready")

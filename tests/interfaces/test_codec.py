@@ -100,6 +100,7 @@ def test_big_endian_arrays_are_read():
     assert codec_of(JointState).decode(written).position == array("d", [1.5])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KNOWN_TO_ROSBAGS)
 @examples(5, parent=QUICK)
 @given(data=st.data())
@@ -179,6 +180,7 @@ def attempt(kind: type[Message], data: bytes, must_fail: bool = False) -> None:
         assert not must_fail
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [Image, JointState, ParameterEvent, WStrings, BoundedSequences])
 def test_absurd_counts_cost_neither_memory_nor_time(kind):
     for value in (b"\xff", b"\x7f", b"\x10"):

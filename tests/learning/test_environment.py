@@ -45,6 +45,7 @@ def test_gymnasium_accepts_it_and_seeds_are_honoured(motion: str) -> None:
     assert episode(1) != episode(2)
 
 
+@pytest.mark.slow
 def test_the_robot_moves_as_commanded_and_stops_at_walls() -> None:
     rewards: list[float] = []
 
@@ -85,6 +86,7 @@ def test_joints_are_driven_by_efforts(tmp_path: object) -> None:
     assert observation["joints"][0, 0] > 0.2
 
 
+@pytest.mark.slow
 def test_several_step_together_in_one_process_or_in_several() -> None:
     options = {"motion": "kinematic", "rays": 8, "camera": True, "max_steps": 3, "reward": lambda _, after: after.x}
     here, there = (make_vector(2, processes=processes, **options) for processes in (False, True))

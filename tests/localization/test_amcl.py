@@ -80,6 +80,7 @@ def test_a_robot_that_was_carried_away_finds_itself_with_recovery(alphas, finds_
     assert bool(carried[-100:, 0].max() < 0.3) is finds_itself
 
 
+@pytest.mark.slow
 def test_particles_are_fewer_when_the_robot_is_sure():
     config = AmclConfig(recovery_alpha_slow=0.0, recovery_alpha_fast=0.0, **GOOD_ODOMETRY)
     filter_ = Amcl(config, MAP, seed=2)

@@ -126,6 +126,7 @@ def generate_launch_description():
 """
 
 
+@pytest.mark.slow
 def test_a_launch_gives_the_same_bag_every_time(tmp_path: Path) -> None:
     digests = []
     for number in (1, 2):
@@ -245,6 +246,7 @@ def test_the_exit_status_is_the_programs(tmp_path: Path, body: str, status: int)
     assert "daidalos" not in result.stderr  # the frames of a traceback are the user's own
 
 
+@pytest.mark.slow
 def test_ros2_launch_takes_the_options(tmp_path: Path) -> None:
     launch = script(tmp_path, GRAPH, "graph.launch.py")
     command = [sys.executable, "-m", "daidalos.cli.ros2", "launch", str(launch), "--lockstep", "--until", "2"]
@@ -256,6 +258,7 @@ def test_ros2_launch_takes_the_options(tmp_path: Path) -> None:
     assert "interrupted" not in result.stdout + result.stderr
 
 
+@pytest.mark.slow
 def test_sockets_hand_on_and_what_follows_the_real_time_is_named(tmp_path: Path) -> None:
     path = script(
         tmp_path,

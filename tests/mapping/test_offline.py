@@ -20,6 +20,7 @@ from .bags import write_bag
 from .worlds import arena, raster
 
 
+@pytest.mark.slow
 def test_a_bag_becomes_a_map_and_a_trajectory(tmp_path: Path) -> None:
     true = write_bag(tmp_path / "bag")
     log = read_log(tmp_path / "bag")

@@ -43,6 +43,7 @@ def gaps(true: np.ndarray, results: list) -> np.ndarray:
     return np.hypot(gap[:, 0], gap[:, 1])
 
 
+@pytest.mark.slow
 def test_a_robot_is_localized_from_a_rough_first_guess_and_the_map_stays(tmp_path: Path) -> None:
     save_pose_graph(mapped(), tmp_path / "arena")
     slam = Slam(CONFIG, load_pose_graph(tmp_path / "arena"))

@@ -72,6 +72,7 @@ def test_the_arena_is_mapped_and_the_robot_stays_localised(lidar: Lidar, config:
     assert agreement.walls_found > 0.9
 
 
+@pytest.mark.slow
 def test_the_pose_is_odometry_corrected_by_the_map() -> None:
     _, odometry, scans = tour(Lidar())
     slam = Slam(SlamConfig(match_every_scan=True))
@@ -189,6 +190,7 @@ def test_the_heading_follows_good_odometry_where_scans_tell_little() -> None:
     assert np.sqrt(np.mean(np.square(turns))) < 3.3
 
 
+@pytest.mark.slow
 def test_scans_may_vary_and_lack_ranges() -> None:
     true, odometry, scans = tour(Lidar(beams=360))
     rng = np.random.default_rng(5)

@@ -28,6 +28,7 @@ def test_random_goals_among_obstacles_that_the_map_does_not_know(kind, seed):
         assert turning < 3.0, "the robot wobbles"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["mppi", "graceful"])
 def test_one_goal_through_a_door(kind):
     stack = turtlebot(WORLD, [1.5, 1.5, 0.0], WALLS, kind=kind)

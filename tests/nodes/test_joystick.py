@@ -58,6 +58,7 @@ def test_what_was_played_is_read(pad: Pad) -> None:
         assert joystick.read() == events
 
 
+@pytest.mark.slow
 def test_axes_are_waited_for_but_buttons_are_not(pad: Pad) -> None:
     with Joystick(pad.path) as joystick:
         pad.play(Event(False, 0, 1))

@@ -22,6 +22,7 @@ def test_a_resting_box_is_carried_by_the_ground():
     assert (contact.depths > 0).all()
 
 
+@pytest.mark.slow
 def test_a_monitor_sees_touches_between_looks():
     simulation = Simulation(arena())
     simulation.spawn(turtlebot(), "robot", Pose((3.0, 1.4, 0)))

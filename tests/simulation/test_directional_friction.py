@@ -34,6 +34,7 @@ def mecanum(drives=True):
     return model
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", [(0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.5), (0.2, -0.2, 0.0)])
 def test_a_base_on_mecanum_wheels_moves_as_its_wheels_say(motion):
     simulation = Simulation(world(mecanum()))

@@ -249,6 +249,7 @@ def test_the_same_seed_gives_the_same_run():
     assert run(8) != first
 
 
+@pytest.mark.slow
 def test_slices_of_time_add_up():
     def run(slices):
         simulation = Simulation(arena(), seed=1)
@@ -302,6 +303,7 @@ def test_sensors_nobody_hears_do_not_measure():
     assert any(isinstance(s, ImuSample) for s in samples)
 
 
+@pytest.mark.slow
 def test_saved_states_replay_bit_for_bit():
     simulation = Simulation(arena(), seed=5)
     simulation.spawn(turtlebot(noise=True), "robot")
@@ -335,6 +337,7 @@ def test_states_outlive_changes_of_friction_and_mass():
         simulation.restore(state)
 
 
+@pytest.mark.slow
 def test_reset_starts_over():
     simulation = Simulation(arena(), seed=5)
     simulation.spawn(turtlebot(noise=True), "robot")

@@ -150,6 +150,7 @@ def test_a_long_text_closes_the_client_with_the_reason(server, monkeypatch):
     talk(server, conversation)
 
 
+@pytest.mark.slow
 def test_who_sends_no_request_in_time_is_closed_with_the_reason(server, monkeypatch):
     monkeypatch.setattr(connections, "HANDSHAKE_S", 0.2)
     with raw(server) as silent, raw(server, HANDSHAKE[:40]) as slow:
@@ -189,6 +190,7 @@ def test_unfinished_frames_are_dropped_beyond_the_limit(server, monkeypatch, cap
     assert "incomplete messages" in caplog.text
 
 
+@pytest.mark.slow
 def test_a_message_that_stays_unfinished_closes_the_client(server, monkeypatch):
     monkeypatch.setattr(connections, "MESSAGE_S", 0.2)
     with hostile(server, b"\x82\xff" + struct.pack(">Q", 1000) + bytes(20)) as opened:
@@ -211,6 +213,7 @@ def test_who_asks_for_assets_and_reads_nothing_costs_little(server):
     talk(server, conversation)
 
 
+@pytest.mark.slow
 def test_who_reads_nothing_is_closed(server, source, monkeypatch, caplog):
     monkeypatch.setattr(connections, "STALL_S", 0.5)
     source.add_topic("/big", STRING)

@@ -117,6 +117,7 @@ NUMBERS = st.floats(0.01, 100).map(lambda value: round(value, 3))
 PLAIN = {entry.key for entries in SETTINGS.values() for entry in entries if entry.key in ("pixels", "metres", "decay")}
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(sorted(SETTINGS)),
     st.dictionaries(st.sampled_from(sorted({*PLAIN, "alpha"})), NUMBERS),

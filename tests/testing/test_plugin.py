@@ -96,6 +96,7 @@ def test_failures_are_reported_with_values_bag_and_picture(tmp_path: Path) -> No
     assert properties["simulated_s"] == "4.0"
 
 
+@pytest.mark.slow
 def test_nothing_is_imported_where_there_is_no_scenario(tmp_path: Path) -> None:
     (tmp_path / "test_it.py").write_text(
         "import sys\n"

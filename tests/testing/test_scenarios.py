@@ -53,6 +53,7 @@ class Relay(Node):
 LAUNCH = """<launch><node pkg="demo_nodes_py" exec="talker" namespace="{0}"/></launch>"""
 
 
+@pytest.mark.slow
 @pytest.mark.scenario(timeout=20)
 def test_launch_files_run_beside_one_another(launch: Any, topic: Any, tmp_path: Path) -> None:
     for side in ("left", "right"):
@@ -63,6 +64,7 @@ def test_launch_files_run_beside_one_another(launch: Any, topic: Any, tmp_path: 
         assert topic(f"/{side}/chatter").wait(4).data.startswith("Hello")
 
 
+@pytest.mark.slow
 @pytest.mark.scenario(timeout=20)
 def test_a_launch_that_fails_fails_the_test(launch: Any, clock: Scenario) -> None:
     launch("demo_nodes_py", "nothing.launch.py")
@@ -70,6 +72,7 @@ def test_a_launch_that_fails_fails_the_test(launch: Any, clock: Scenario) -> Non
         clock.sleep(1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.scenario(timeout=60, seed=3)
 def test_topics_services_and_programs(
     nodes: Nodes, topic: Any, service: Any, clock: Scenario, network: Network
@@ -115,6 +118,7 @@ def test_topics_services_and_programs(
     assert heard.rate(during=1.0) == pytest.approx(10.0, abs=1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.scenario(timeout=60, seed=1, world="arena")
 def test_worlds_and_their_disturbances(world: World, robot: Any, transform: Any, topic: Any, clock: Scenario) -> None:
     assert robot.name == "waffle"
@@ -143,6 +147,7 @@ def test_worlds_and_their_disturbances(world: World, robot: Any, transform: Any,
     robot.speed.eventually(below=0.01, within=20)
 
 
+@pytest.mark.slow
 @pytest.mark.scenario
 @pytest.mark.parametrize("word", ["one", "two"])
 def test_the_usual_fixtures_and_parameters_work(word: str, tmp_path: Any, clock: Scenario) -> None:

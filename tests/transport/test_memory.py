@@ -29,6 +29,7 @@ def pages_cleared_an_image() -> float:
     return (resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before) / ROUNDS
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not sys.platform.startswith("linux") or not hasattr(ctypes.CDLL(None), "mallopt"), reason="needs the GNU C library"
 )

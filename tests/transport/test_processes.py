@@ -38,6 +38,7 @@ def names(session: Session) -> list[str]:
     return [node.name for node in session.graph.nodes()]
 
 
+@pytest.mark.slow
 def test_whichever_starts_first(new_session: Callable[[], Session]):
     with Peer("talk").ready() as first:
         session = new_session()
@@ -178,6 +179,7 @@ def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Sessio
     assert inbox.wait(1, 0.0) == []
 
 
+@pytest.mark.slow
 def test_acknowledgements_are_waited_for_where_there_are_any(new_session: Callable[[], Session], middleware: str):
     session = new_session()
     publisher = session.create_publisher(node_of(session, "me"), "/topic", Int32, Qos())

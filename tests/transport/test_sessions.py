@@ -149,6 +149,7 @@ def test_wide_strings_cross(two):
     assert inbox.wait(1)[0][0].wstring_value == "Ωμέγα"
 
 
+@pytest.mark.slow
 def test_reliable_loses_nothing_that_the_depth_allows(two):
     count = 20_000
     publisher, inbox = connected(two, Int32, Qos(depth=count))
@@ -325,6 +326,7 @@ def test_a_session_that_closes_is_gone(two):
     assert there.graph.wait_for(lambda: not there.graph.nodes() and not there.graph.endpoints(), TIMEOUT_S)
 
 
+@pytest.mark.slow
 def test_a_newcomer_knows_all_when_it_has_settled(new_session):
     first = new_session()
     node = node_of(first, "many")
@@ -357,6 +359,7 @@ def test_entities_come_and_go_without_a_trace(two):
     assert inbox.wait(1)[0][0].data == "still here"
 
 
+@pytest.mark.slow
 def test_closing_while_others_publish_harms_nobody(two):
     here, there = two
     node = node_of(here, "talker")

@@ -48,6 +48,7 @@ def read_pid(process):
     raise AssertionError("no process id was printed")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["child.pid", "-child.pid"], ids=["process", "group"])
 def test_a_killed_parent_takes_its_children_with_it(target):
     parent = started(PARENT.format(target=target, after="threading.Event().wait()"))
@@ -61,6 +62,7 @@ def test_a_killed_parent_takes_its_children_with_it(target):
     parent.wait()
 
 
+@pytest.mark.slow
 def test_a_released_child_is_left_alone():
     after = "guard.release(child.pid)\nguard.watch(1 << 22)\nprint('released', flush=True)\nthreading.Event().wait()"
     parent = started(PARENT.format(target="child.pid", after=after))
@@ -78,6 +80,7 @@ def test_a_released_child_is_left_alone():
     parent.wait()
 
 
+@pytest.mark.slow
 def test_a_killed_launch_takes_its_processes_with_it():
     launch = started(LAUNCH)
     node = psutil.Process(read_pid(launch))

@@ -62,6 +62,7 @@ def test_an_action_is_named_with_its_server_and_found_by_its_type(env, server):
     assert ros2("action", "type", "/lab/fibonacci", env=env).out == f"{TYPE}\n"
 
 
+@pytest.mark.slow
 def test_a_goal_succeeds(env, server):
     told = ros2("action", "send_goal", "-f", "/lab/fibonacci", TYPE, "order: 3", env=env).out
     assert "Goal accepted with ID: " in told
@@ -69,6 +70,7 @@ def test_a_goal_succeeds(env, server):
     assert told.endswith("Result:\n    sequence:\n- 0\n- 1\n- 1\n- 2\n\nGoal finished with status: SUCCEEDED\n")
 
 
+@pytest.mark.slow
 def test_ctrl_c_cancels_the_goal(env, server):
     command = [*ROS2, "action", "send_goal", "-f", "/lab/fibonacci", TYPE, "order: 1000"]
     process = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

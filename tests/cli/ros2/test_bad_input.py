@@ -145,6 +145,7 @@ def test_ros_arguments_that_do_not_fit(env, words, fault):
     _check(ros2("run", "demo_nodes_py", "talker", "--ros-args", *words, env=env), 1, [fault])
 
 
+@pytest.mark.slow
 def test_environments_that_do_not_fit(env):
     for words in (["topic", "list", "--no-daemon"], ["run", "demo_nodes_py", "talker"]):
         _check(ros2(*words, env={**env, "ROS_DOMAIN_ID": "abc"}), 1, ["ROS_DOMAIN_ID is 'abc', expected a number"])

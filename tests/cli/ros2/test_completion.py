@@ -90,6 +90,7 @@ def test_bash_completes_launch_files_and_their_arguments(bash, tmp_path, monkeyp
     assert bash("ros2 launch lab.launch.xml rob") in (["robot:="], ["robot:"])
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("zsh") is None, reason="no zsh here")
 def test_zsh_completes(shell, tmp_path):
     """In a terminal of its own, as zsh completes only for somebody who types."""

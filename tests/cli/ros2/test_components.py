@@ -49,6 +49,7 @@ def test_what_is_not_there_cannot_be_loaded_or_unloaded(env, container):
     )
 
 
+@pytest.mark.slow
 def test_components_that_could_be_loaded(env):
     assert "demo_nodes_cpp\n  demo_nodes_cpp::AddTwoIntsServer\n" in ros2("component", "types", env=env).out
     listed = ros2("component", "types", "demo_nodes_cpp", env=env).out.split()

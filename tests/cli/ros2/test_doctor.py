@@ -3,6 +3,8 @@
 import signal
 import subprocess
 
+import pytest
+
 from .commands import ROS2, ros2
 
 DEAF = """
@@ -15,6 +17,7 @@ rclpy.spin(node)
 """
 
 
+@pytest.mark.slow
 def test_topics_that_lead_nowhere_are_warned_of(env, beside, wait_for):
     beside(DEAF)
     wait_for("/talker/set_parameters")
@@ -23,6 +26,7 @@ def test_topics_that_lead_nowhere_are_warned_of(env, beside, wait_for):
     assert "Publisher without subscriber detected on /nobody_hears." in result.out + result.err
 
 
+@pytest.mark.slow
 def test_the_report_has_every_part(env, beside, wait_for):
     beside(DEAF)
     wait_for("/talker/set_parameters")

@@ -121,6 +121,7 @@ def test_an_added_command_runs_and_is_listed(with_package):
     assert "  greet             Greet somebody\n" in ros2(env=with_package).out
 
 
+@pytest.mark.slow
 def test_an_added_verb_runs_and_is_listed(with_package):
     assert ros2("topic", "loud", "/scan", env=with_package).out == "/SCAN\n"
     assert "  loud   Shout a topic's name\n" in ros2("topic", env=with_package).out
@@ -140,6 +141,7 @@ def test_groups_are_listed(env):
     assert "ros2cli.command" in shown
 
 
+@pytest.mark.slow
 def test_an_extension_written_for_ros2_runs_as_it_is(with_package):
     assert ros2("census", "nodes", "--no-daemon", "--and-one", env=with_package).out == "2\n"
     assert "Commands:\n  nodes  Count the nodes\n" in ros2("census", env=with_package).out
@@ -148,6 +150,7 @@ def test_an_extension_written_for_ros2_runs_as_it_is(with_package):
     assert "Did you mean 'nodes'?" in result.err
 
 
+@pytest.mark.slow
 def test_a_declared_group_is_listed(with_package):
     assert "ros2census.verb" in ros2("extension_points", env=with_package).out.splitlines()
     assert "ros2census.verb\n  nodes: Count the nodes\n" in ros2("extensions", env=with_package).out

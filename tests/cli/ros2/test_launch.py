@@ -50,6 +50,7 @@ def test_arguments_reach_the_file_and_the_last_one_wins(launch, tmp_path):
     assert "[echo-2]: process has finished cleanly" in log.read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("given", "seen"), [({}, "jazzy 2 3"), ({"ROS_DISTRO": "humble"}, "humble 2 3")])
 def test_files_and_programs_see_which_ros_this_is(env, tmp_path, given, seen):
     variables = ("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION")
@@ -62,6 +63,7 @@ def test_files_and_programs_see_which_ros_this_is(env, tmp_path, given, seen):
     assert f"[echo-1] {seen}\n" in result.out
 
 
+@pytest.mark.slow
 def test_an_argument_is_missing(launch):
     result = launch("echo.launch.xml", "tims:=1", "other:=2")
     assert result.status == 1
@@ -71,6 +73,7 @@ def test_an_argument_is_missing(launch):
     assert "missing required argument 'times'" in result.err + result.out
 
 
+@pytest.mark.slow
 def test_prefixes_and_the_output_of_all(launch):
     words = ("-a", "--launch-prefix", "env EXTRA=1", "echo.launch.xml", "times:=1")
     assert "[printenv-1] 1\n" in launch(*words).out
@@ -85,12 +88,14 @@ def test_debugging_tells_more(launch):
     assert result.status == 0
 
 
+@pytest.mark.slow
 def test_names_of_launch_files_are_suggested(launch):
     assert "needs the name of one of its launch files: multisim.launch.py" in launch("turtlesim").err
     assert "Did you mean 'multisim.launch.py'?" in launch("turtlesim", "multisim.lanch.py").err
     assert "There are: multisim.launch.py" in launch("turtlesim", "x").err
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_what_was_launched_in_order(env, tmp_path):
     (tmp_path / "two.launch.yaml").write_text(
         "launch:\n- executable: {cmd: sleep 1000}\n- executable: {cmd: sleep 1000}\n"
@@ -116,6 +121,7 @@ def test_ctrl_c_ends_what_was_launched_in_order(env, tmp_path):
     assert process.returncode == 0
 
 
+@pytest.mark.slow
 def test_a_launch_goes_on_when_nobody_reads(env, tmp_path):
     program = "for i in 1 2 3 4; do echo $i; sleep 0.05; done; touch done"
     (tmp_path / "a.launch.xml").write_text(

@@ -38,6 +38,7 @@ def test_a_node_is_taken_through_its_states(env, managed):
     assert lifecycle("get").out == "/managed: active [3]\n"
 
 
+@pytest.mark.slow
 def test_what_cannot_be_done_is_said(env, managed):
     result = ros2("lifecycle", "set", "/managed", "activate", env=env)
     assert (result.status, result.out) == (1, "")

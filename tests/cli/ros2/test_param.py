@@ -69,6 +69,7 @@ def test_a_node_that_is_starting_is_waited_for(env):
             node.kill()
 
 
+@pytest.mark.slow
 def test_lists_are_filtered(env, talker):
     listed = ros2("param", "list", "/lab/talker", "--param-prefixes", "gains", "--param-type", env=env).out
     assert listed == "  gains.p (type: integer array)\n"

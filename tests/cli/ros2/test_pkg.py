@@ -54,6 +54,7 @@ def test_names_that_packages_may_not_have(env, tmp_path, name):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_packages_are_found(env, tmp_path):
     assert {"rclpy", "std_msgs", "turtlesim"} <= set(ros2("pkg", "list", env=env).out.split())
     prefix = ros2("pkg", "prefix", "std_msgs", env=env).out.strip()

@@ -36,6 +36,7 @@ def keystore(env, tmp_path):
     return security
 
 
+@pytest.mark.slow
 def test_a_keystore_is_filled_and_listed(keystore, tmp_path):
     (tmp_path / "policy.xml").write_text(POLICY)
     assert keystore("list_enclaves", "keys").out == "/lab/talker\n"
@@ -47,6 +48,7 @@ def test_a_keystore_is_filled_and_listed(keystore, tmp_path):
     assert keystore("list_enclaves", "other").out == "/a\n/b\n"
 
 
+@pytest.mark.slow
 def test_mistakes(keystore, tmp_path):
     (tmp_path / "broken.xml").write_text("<policy")
     for words, fault in (
@@ -63,6 +65,7 @@ def test_mistakes(keystore, tmp_path):
         assert "Traceback" not in result.err
 
 
+@pytest.mark.slow
 def test_the_certificates_are_of_one_authority(keystore, tmp_path):
     from cryptography import x509
 
@@ -73,6 +76,7 @@ def test_the_certificates_are_of_one_authority(keystore, tmp_path):
     enclave.verify_directly_issued_by(authority)
 
 
+@pytest.mark.slow
 def test_the_policy_of_what_runs_is_written(keystore, beside, wait_for, tmp_path):
     beside("import rclpy; rclpy.init(); rclpy.spin(rclpy.create_node('quiet'))")
     wait_for("/quiet/set_parameters")

@@ -28,6 +28,7 @@ rclpy.spin(node)
 """
 
 
+@pytest.mark.slow
 def test_what_was_latched_comes_late(env, beside, wait_for):
     beside(LATCHED)
     wait_for("/latched")
@@ -42,6 +43,7 @@ def test_values_that_no_message_can_hold_are_refused_before_anybody_is_waited_fo
     assert result.err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_messages_come_from_standard_input(env, beside, wait_for):
     listener = beside(LISTENER)
     wait_for("/numbers")
@@ -50,6 +52,7 @@ def test_messages_come_from_standard_input(env, beside, wait_for):
     assert listener.stdout.readline() == "7\n"
 
 
+@pytest.mark.slow
 def test_echo_gives_up_after_a_while(env, beside, wait_for):
     beside(LISTENER)
     wait_for("/numbers")
@@ -57,6 +60,7 @@ def test_echo_gives_up_after_a_while(env, beside, wait_for):
     assert (result.out, result.err.count("Traceback")) == ("", 0)
 
 
+@pytest.mark.slow
 def test_a_number_of_messages_at_a_rate(env, beside, wait_for):
     listener = beside(LISTENER)
     wait_for("/numbers")

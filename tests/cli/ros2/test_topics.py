@@ -52,6 +52,7 @@ def test_filters():
         filter_function("m.nope")(LaserScan())
 
 
+@pytest.mark.slow
 def test_a_latched_topic_whose_publisher_comes_after_its_listener_is_heard(monkeypatch):
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_daidalos_inprocess")
     parser = ArgumentParser()

@@ -66,6 +66,7 @@ def test_the_sensor_measures_how_far_its_link_leans(install: Install) -> None:
     assert sample.value == pytest.approx(0.6, abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.timeout(300)
 def test_the_planner_plans_where_the_straight_line_is_free(install: Install, stage: Set) -> None:
@@ -119,6 +120,7 @@ def test_the_tree_node_judges_paths(install: Install) -> None:
         assert robot.run(BehaviorTree.parse(text, robot, blackboard)) == status
 
 
+@pytest.mark.slow
 def test_the_verb_runs_and_is_in_the_help(install: Install, tmp_path: Path) -> None:
     install("verb")
     robot = tmp_path / "r.urdf"

@@ -58,6 +58,7 @@ def twin(pose, beams, product):
     return math.exp(total) if product else total
 
 
+@pytest.mark.slow
 @examples(30)
 @given(x=st.floats(0.3, 7.7), y=st.floats(0.3, 5.7), yaw=st.floats(-3.1, 3.1), product=st.booleans())
 def test_likelihood_fields_follow_their_formula(x, y, yaw, product):

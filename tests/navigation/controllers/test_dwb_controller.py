@@ -34,6 +34,7 @@ def drive(path, costmap, cycles, **more):
     return np.array(poses), np.array(velocities)
 
 
+@pytest.mark.slow
 def test_a_path_is_followed_to_the_pose_of_the_goal():
     poses, velocities = drive(line((1.5, 0.6), heading=-1.0), ground(), 300)
     assert np.hypot(*(poses[-1, :2] - (1.5, 0.6))) < 0.25
@@ -41,6 +42,7 @@ def test_a_path_is_followed_to_the_pose_of_the_goal():
     assert velocities[20:80, 0].mean() > 0.2
 
 
+@pytest.mark.slow
 def test_what_the_planner_did_not_know_is_not_touched():
     costmap = ground([(0.8, 0.1), (0.85, 0.1)])
     poses, _ = drive(line((1.6, 0.0)), costmap, 200)

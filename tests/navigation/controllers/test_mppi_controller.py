@@ -35,6 +35,7 @@ def test_a_straight_path_is_followed_straight_and_fast():
     assert np.abs(velocities[10:60, 2]).mean() < 0.15
 
 
+@pytest.mark.slow
 def test_it_stops_at_the_goal():
     poses, velocities = drive(line((2.0, 0.0)), ground(), 140)
     assert np.hypot(*(poses[-1, :2] - (2.0, 0.0))) < 0.1
@@ -50,6 +51,7 @@ def test_limits_of_velocity_and_acceleration_hold():
     assert steps[:, 2].max() <= 3.2 * 0.05 + 1e-5
 
 
+@pytest.mark.slow
 def test_it_drives_around_what_the_planner_did_not_know():
     costmap = ground([(1.2, 0.02), (1.25, 0.02)])
     poses, _ = drive(line((2.5, 0.0)), costmap, 160)
@@ -93,6 +95,7 @@ def test_the_predicted_trajectory_begins_at_the_robot():
     assert controller.trajectory[-1, 0] > 0.5
 
 
+@pytest.mark.slow
 def test_a_robot_that_moves_sideways_does():
     poses, velocities = drive(line((0.0, 1.5), heading=0.0), ground(), 120, motion_model="Omni")
     assert np.hypot(*(poses[-1, :2] - (0.0, 1.5))) < 0.15
@@ -100,6 +103,7 @@ def test_a_robot_that_moves_sideways_does():
     assert np.abs(velocities[:, 1]).max() <= 0.5 + 1e-6
 
 
+@pytest.mark.slow
 def test_a_robot_that_steers_keeps_to_its_circle():
     constraints = AckermannConstraints(min_turning_r=0.5)
     poses, velocities = drive(line((2.0, 0.6)), ground(), 160, motion_model="Ackermann", ackermann=constraints)

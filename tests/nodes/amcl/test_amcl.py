@@ -33,6 +33,7 @@ COURSE = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_courses_parameters_localize_a_robot(stage: Callable[[dict[str, Any]], Stage]) -> None:
     set_stage = stage({"/amcl": {**COURSE, "force_update_after_initialpose": True}})
     log = set_stage.collect(Log, "/rosout", 100)

@@ -36,6 +36,7 @@ def said(watcher: Node, text: str) -> threading.Event:
     return event
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("first", "second", "text"),
     [("Talker", "Listener", "I heard: [Hello World: 1]"), ("Client", "Server", "Got result: [5]")],

@@ -79,6 +79,7 @@ def test_it_waits_for_the_description(graph: Context) -> None:  # noqa: F811
         assert node.manager.components["h"].state == "active"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [100, 300, 1000])
 def test_simulated_time_is_followed_exactly(graph: Context, rate: int) -> None:  # noqa: F811
     node = Counting(use_sim_time=True, update_rate=rate, robot_description=MOCK)
@@ -115,6 +116,7 @@ def test_a_clock_that_goes_back_is_followed(graph: Context) -> None:  # noqa: F8
         assert node.instants[-1] <= 31_000_000
 
 
+@pytest.mark.slow
 def test_the_wall_clock_keeps_the_rate_as_far_as_the_machine_does(graph: Context) -> None:  # noqa: F811
     node = Counting(update_rate=100, robot_description=MOCK)
     with spun(node):

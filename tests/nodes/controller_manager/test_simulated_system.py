@@ -255,6 +255,7 @@ def test_a_joint_is_commanded_in_one_way() -> None:
     assert rig.manager.claimed("swing/velocity") == "velocity"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [100, 250, 300, 1000])
 def test_loops_hold_their_rate_exactly(tmp_path: Path, rate: int) -> None:
     file = tmp_path / "parameters.yaml"
@@ -270,6 +271,7 @@ def test_loops_hold_their_rate_exactly(tmp_path: Path, rate: int) -> None:
     assert stamps == rig.times
 
 
+@pytest.mark.slow
 def test_a_trajectory_is_followed_in_the_simulation() -> None:
     rig = Rig(pendulum())
     controller = rig.add(
@@ -344,6 +346,7 @@ def rover() -> Rig:
     return rig
 
 
+@pytest.mark.slow
 def test_a_rover_drives_where_its_odometry_says(rover: Rig) -> None:
     start = rover.simulation.pose("robot").position
     odometry = drive(rover, 5.0, 0.5, 0.0)

@@ -127,6 +127,7 @@ def test_a_request_for_impossible_parameters_fails_alone(node: Node, name: str) 
         assert [one.value for one in source.get_parameters(["/tested.speed"]).result(5.0)] == [1.5]
 
 
+@pytest.mark.slow
 def test_a_node_that_does_not_answer_delays_the_others_once_and_leaves_nothing(node: Node) -> None:  # noqa: F811
     source = RosGraphSource(node)
     node.declare_parameter("speed", 1.5)

@@ -19,6 +19,7 @@ from nodes.stepped import LATCHED, Stage
 pytestmark = pytest.mark.timeout(300)
 
 
+@pytest.mark.slow
 def test_the_way_of_a_frame(stage: Callable[[dict[str, Any]], Stage]) -> None:
     parameters = {"trajectory_update_rate": 10, "trajectory_publish_rate": 1.0, "source_frame_name": "robot"}
     set_stage = stage({"/hector_trajectory_server": parameters})

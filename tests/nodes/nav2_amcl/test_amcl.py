@@ -240,6 +240,7 @@ def test_missing_transforms_and_scans_are_reported(localized: Bench) -> None:
     assert bench.error()[0] < 0.1
 
 
+@pytest.mark.slow
 def test_time_that_goes_back_and_odometry_that_starts_anew(localized: Bench) -> None:
     bench = localized
     bench.walk(15)

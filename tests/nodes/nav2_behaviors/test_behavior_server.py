@@ -62,6 +62,7 @@ def be_somewhere(robot: Node, obstacle: tuple[float, float] | None = None) -> No
     robot.create_publisher(Costmap, "local_costmap/costmap_raw", latched).publish(costmap)
 
 
+@pytest.mark.slow
 def test_a_goal_waits_for_the_first_costmap(executor: SingleThreadedExecutor) -> None:
     robot = executor.get_nodes()[1]
     client = ActionClient(robot, Wait, "wait")
@@ -105,6 +106,7 @@ def test_deactivating_aborts_a_goal(executor: SingleThreadedExecutor) -> None:
     assert not refused.result().accepted
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
 def test_ctrl_c_during_a_behaviour_stops_the_robot_and_prints_nothing(
     executor: SingleThreadedExecutor, capfd: pytest.CaptureFixture[str]

@@ -154,6 +154,7 @@ def test_the_default_tree_replans_while_it_drives(stage: Callable[[dict[str, Any
     assert bench.stage.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
+@pytest.mark.slow
 def test_several_poses_are_driven_through(stage: Callable[[dict[str, Any]], Stage]) -> None:
     bench = Bench(stage({})).start()
     planner = PlayedServer(bench.stage, ComputePathThroughPoses, "compute_path_through_poses")
@@ -202,6 +203,7 @@ def test_a_tree_cancels_the_controller_and_takes_the_chosen_one(
     assert bench.controller.handles[1].request.controller_id == "B"
 
 
+@pytest.mark.slow
 def test_a_goal_may_name_its_tree(stage: Callable[[dict[str, Any]], Stage], tree: Path) -> None:
     bench = Bench(stage({})).start()
     bench.drive(pose(2.0), tree=str(tree))

@@ -90,6 +90,7 @@ class Bench:
         return any(word in one.msg for one in self.log)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sensor", KINDS)
 def test_the_robot_stops_before_what_a_sensor_sees(stage: Set, sensor: str) -> None:
     bench = Bench(stage, sensor=sensor)
@@ -104,6 +105,7 @@ def test_the_robot_stops_before_what_a_sensor_sees(stage: Set, sensor: str) -> N
     assert len(bench.robot.commands) == count
 
 
+@pytest.mark.slow
 def test_a_robot_that_approaches_never_touches(stage: Set) -> None:
     zone = {"type": "polygon", "action_type": "approach", "footprint_topic": "footprint", "min_points": 3}
     bench = Bench(stage, zone)
@@ -158,6 +160,7 @@ def test_transforms_that_stop_and_commands_that_are_not_finite_stop_the_robot(st
     bench.stage.step_until(lambda: bench.has_logged("the transform from odom to base_link is"))
 
 
+@pytest.mark.slow
 def test_the_motion_since_the_scan_is_taken_into_account(stage: Set) -> None:
     bench = Bench(stage, source_timeout=5.0)
     bench.drive(0.5)

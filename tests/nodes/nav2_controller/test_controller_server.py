@@ -97,6 +97,7 @@ def bench(stage: Callable[[dict[str, Any]], Stage]) -> Bench:
     return Bench(stage(PARAMETERS)).start()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("limit", "percentage", "fastest"), [(0.1, False, 0.1), (50.0, True, 0.25), (9.0, False, 0.5)])
 def test_a_speed_limit_is_kept_until_it_is_removed(
     bench: Bench, limit: float, percentage: bool, fastest: float
@@ -130,6 +131,7 @@ def test_a_path_is_driven_to_its_end(bench: Bench) -> None:
     assert plans[0].header.frame_id == "odom"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "speed"), [("", 0.5), ("FollowPath", 0.5), ("Other", 0.2)])
 def test_the_goal_chooses_the_controller(bench: Bench, name: str, speed: float) -> None:
     status, _ = bench.drive(straight(1.0), controller_id=name)
@@ -143,6 +145,7 @@ def test_a_path_in_another_frame_leads_elsewhere(stage: Callable[[dict[str, Any]
     assert bench.robot.pose[0] == pytest.approx(1.0, abs=0.3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("goal", "code", "reason"),
     [
@@ -182,6 +185,7 @@ def test_a_cancelled_goal_stops_the_robot(bench: Bench) -> None:
     assert bench.robot.pose[0] < 2.0
 
 
+@pytest.mark.slow
 def test_a_new_path_takes_over_without_a_stop(bench: Bench) -> None:
     first = bench.drive_until_moving(straight(3.0))
     del bench.robot.commands[:]
@@ -194,6 +198,7 @@ def test_a_new_path_takes_over_without_a_stop(bench: Bench) -> None:
     assert bench.robot.pose[0] == pytest.approx(2.0, abs=0.3)
 
 
+@pytest.mark.slow
 def test_a_robot_that_does_not_move_makes_no_progress(bench: Bench) -> None:
     step = bench.robot.step
     bench.robot.step = lambda seconds, stamp: step(0.0, stamp)  # type: ignore[method-assign]
@@ -230,6 +235,7 @@ def test_deactivating_aborts_the_goal_and_stops_the_robot(bench: Bench) -> None:
     assert bench.robot.commands == []
 
 
+@pytest.mark.slow
 def test_parameters_of_plugins_change_while_it_is_active(bench: Bench) -> None:
     changed = [Parameter("FollowPath.desired_linear_vel", value=0.2), Parameter("failure_tolerance", value=0.1)]
     assert all(one.successful for one in bench.server.set_parameters(changed))
@@ -239,6 +245,7 @@ def test_parameters_of_plugins_change_while_it_is_active(bench: Bench) -> None:
     assert refused.reason == "parameter 'FollowPath.desired_linear_vel' must be above 0, got 0"
 
 
+@pytest.mark.slow
 def test_it_can_be_configured_again(bench: Bench) -> None:
     bench.server.trigger_deactivate()
     bench.server.set_parameters([Parameter("FollowPath.desired_linear_vel", value=0.3)])
@@ -303,6 +310,7 @@ def test_commands_come_at_the_frequency(stage: Callable[[dict[str, Any]], Stage]
     assert len(bench.robot.commands) == pytest.approx(10, abs=1)
 
 
+@pytest.mark.slow
 def test_without_a_transform_the_goal_ends_with_the_reason(stage: Callable[[dict[str, Any]], Stage]) -> None:
     bench = Bench(stage(changed(COSTMAP, robot_base_frame="chassis")))
     bench.server.trigger_configure()
@@ -357,6 +365,7 @@ def test_the_robot_stops_when_scans_stop(stage: Callable[[dict[str, Any]], Stage
     assert bench.robot.pose[0] - laser.last_place < 0.3
 
 
+@pytest.mark.slow
 def test_the_robot_goes_on_when_scans_come_again(stage: Callable[[dict[str, Any]], Stage]) -> None:
     bench = Bench(stage({**SEEING, "/controller_server": {
         **PARAMETERS["/controller_server"], "costmap_update_timeout": 5.0}}))  # fmt: skip

@@ -147,6 +147,7 @@ def test_pause_and_resume(bench: Bench) -> None:
     assert bench.is_active
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", [Request.RESET, Request.SHUTDOWN])
 def test_nodes_go_down_in_the_reverse_order(bench: Bench, command: int) -> None:
     bench.command(Request.STARTUP)
@@ -219,6 +220,7 @@ def test_when_a_node_ends_the_robot_stops_and_all_come_up_when_it_is_back(
     assert bench.is_active
 
 
+@pytest.mark.slow
 def test_a_node_that_does_not_answer_is_down(
     stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -236,6 +238,7 @@ def test_a_node_that_does_not_answer_is_down(
     bench.stage.step_until(lambda: bench.nodes["first"].current_state.label == "inactive")
 
 
+@pytest.mark.slow
 def test_a_node_that_stays_away_is_named(
     stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
 ) -> None:

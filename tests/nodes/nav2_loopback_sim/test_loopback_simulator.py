@@ -25,6 +25,7 @@ def place(stage: Stage, *pose: float) -> None:
     stage.publish("/initialpose", message)
 
 
+@pytest.mark.slow
 def test_the_robot_obeys_is_moved_and_sees_the_map(stage: Callable[[dict[str, Any]], Stage]) -> None:
     from tf2_msgs.msg import TFMessage
 

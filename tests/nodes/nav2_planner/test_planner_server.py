@@ -92,6 +92,7 @@ def bench(stage: Callable[[dict[str, Any]], Stage]) -> Bench:
     return Bench(stage(PARAMETERS)).start(room())
 
 
+@pytest.mark.slow
 def test_a_path_leads_from_the_robot_through_the_gap(bench: Bench) -> None:
     published = bench.stage.collect(Path, "plan")
     status, result = bench.plan(goal=pose(1.5, 0.0, yaw=1.0))
@@ -201,6 +202,7 @@ def test_unknown_space_is_crossed_where_the_planner_may(bench: Bench) -> None:
     assert bench.plan(goal=pose(-2.5, -1.5), planner_id="GridBased")[0] == GoalStatus.STATUS_SUCCEEDED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("missing", ["map", "transform"])
 def test_without_map_or_transform_the_goal_ends_with_the_reason(
     stage: Callable[[dict[str, Any]], Stage], missing: str

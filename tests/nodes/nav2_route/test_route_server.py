@@ -167,6 +167,7 @@ def test_a_robot_is_tracked_with_its_operations(stage: SetStage, tmp_path: Path)
     assert [one.speed_limit for one in limits] == [100.0, 60.0]
 
 
+@pytest.mark.slow
 def test_a_blocked_edge_is_routed_around_and_a_closed_graph_aborts(stage: SetStage, tmp_path: Path) -> None:
     monitor = {"plugin": "nav2_route::CollisionMonitor", "costmap_topic": "/seen", "rate": 20.0}
     bench = Bench(
@@ -211,6 +212,7 @@ def test_another_route_along_the_same_edge_goes_on_from_where_the_robot_is(stage
     assert bench.stage.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("answer", [None, False])
 def test_an_operation_that_fails_aborts(stage: SetStage, tmp_path: Path, answer: bool | None) -> None:
     door = {"a": {"type": "OpenDoor", "trigger": "NODE", "metadata": {"service_name": "/door"}}}

@@ -61,6 +61,7 @@ class Bench:
         return any(word in one.msg for one in self.log)
 
 
+@pytest.mark.slow
 def test_commands_are_smoothed_while_active_and_time_out(stage: Set) -> None:
     bench = Bench(stage, max_accel=[1.0, 0.0, 1.0], velocity_timeout=0.5, use_realtime_priority=False)
     bench.drive(0.4, 0.5)

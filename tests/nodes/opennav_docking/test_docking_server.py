@@ -89,6 +89,7 @@ class Bench:
         return answer.result().status, answer.result().result
 
 
+@pytest.mark.slow
 def test_a_robot_stages_docks_and_undocks(stage: SetStage) -> None:
     bench = Bench(stage)
     bench.navigate()
@@ -109,6 +110,7 @@ def test_a_robot_stages_docks_and_undocks(stage: SetStage) -> None:
     assert bench.end(bench.stage.send(UndockRobot, "undock_robot"))[1].success  # in no dock
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rotate", [False, True])
 def test_backward_docks(stage: SetStage, rotate: bool) -> None:
     dock = {**PLAIN, "plugin": "opennav_docking::SimpleNonChargingDock", "dock_direction": "backward"}
@@ -125,6 +127,7 @@ def test_backward_docks(stage: SetStage, rotate: bool) -> None:
     assert abs(wrap(bench.robot.pose[2] - HOME[2] - (0.0 if rotate else math.pi))) < 0.1
 
 
+@pytest.mark.slow
 def test_a_dock_that_is_seen_elsewhere_is_docked_at_where_it_is_seen(stage: SetStage) -> None:
     bench = Bench(stage, {**SEEN, "filter_coef": 0.5})
     bench.robot.pose = np.array([1.3, 0.3, 0.2])
@@ -133,6 +136,7 @@ def test_a_dock_that_is_seen_elsewhere_is_docked_at_where_it_is_seen(stage: SetS
     assert np.hypot(*(bench.robot.pose - bench.marker)[:2]) < 0.06
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["never", "stops", "jumps"])
 def test_a_dock_that_is_not_seen_stops_the_robot(stage: SetStage, how: str) -> None:
     bench = Bench(stage, SEEN)
@@ -153,6 +157,7 @@ def test_a_dock_that_is_not_seen_stops_the_robot(stage: SetStage, how: str) -> N
         assert ("jumped by 2" in result.error_msg) == (how == "jumps")
 
 
+@pytest.mark.slow
 def test_a_dock_that_is_lost_is_tried_again_from_the_staging_pose(stage: SetStage) -> None:
     bench = Bench(stage, SEEN, max_retries=1)
     bench.robot.pose = np.array([1.0, 0.2, 0.3])
@@ -167,6 +172,7 @@ def test_a_dock_that_is_lost_is_tried_again_from_the_staging_pose(stage: SetStag
     assert np.hypot(*(bench.robot.pose - HOME)[:2]) < 0.06
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("parameters", "goal", "code", "reason"),
     [
@@ -188,6 +194,7 @@ def test_a_goal_that_fails_is_aborted_with_the_reason(
     assert reason in result.error_msg
 
 
+@pytest.mark.slow
 def test_obstacles_and_late_data_stop_the_robot(stage: SetStage) -> None:
     bench = Bench(stage, PLAIN, controller={"use_collision_detection": True}, data_timeout=5.0)
     costmap = Costmap.filled(120, 120, 0.05, (-3.0, -3.0))
@@ -210,6 +217,7 @@ def test_a_late_transform_stops_the_robot(stage: SetStage) -> None:
     assert "longer than 1 s" in result.error_msg
 
 
+@pytest.mark.slow
 def test_a_charger_that_does_not_charge_and_one_that_does(stage: SetStage) -> None:
     bench = Bench(stage, {"plugin": "opennav_docking::SimpleChargingDock"}, wait_charge_timeout=0.5)
     bench.robot.pose = HOME - np.array([0.4, 0.15, 0.0])
@@ -236,6 +244,7 @@ def test_cancelling_and_other_goals_stop_the_robot(stage: SetStage) -> None:
     assert bench.end(second)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
+@pytest.mark.slow
 def test_docks_of_another_file_are_used(stage: SetStage, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     bench = Bench(stage)
     service, file = "/docking_server/reload_database", tmp_path / "docks.yaml"

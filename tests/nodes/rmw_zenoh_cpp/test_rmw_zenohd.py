@@ -28,6 +28,7 @@ def start(port: int, **variables: str) -> subprocess.Popen[str]:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="sends signals to a group of processes")
 def test_it_runs_until_ctrl_c(port):
     router = start(port)

@@ -186,6 +186,7 @@ def test_a_missing_description_is_named(graph):  # noqa: F811
         publisher("")
 
 
+@pytest.mark.timing
 def test_a_thousand_joints_take_less_than_a_millisecond(graph):  # noqa: F811
     """At 100 Hz that is a tenth of a core: decoding, kinematics and encoding together."""
     state_publisher = publisher(chain(1000), publish_frequency=0.0)

@@ -135,6 +135,7 @@ def test_a_publisher_that_came_later_with_less_is_heard(server: RosbridgeWebsock
     talk(server, conversation)
 
 
+@pytest.mark.slow
 def test_one_client_serves_what_another_one_calls(server: RosbridgeWebsocket) -> None:
     async def conversation(serving: Client, calling: Client) -> None:
         await serving.say("advertise_service", service="/flip", type="std_srvs/SetBool")

@@ -122,6 +122,7 @@ def grid_of(message: OccupancyGrid) -> Grid:
     return Grid(grid_array(message), message.info.resolution, (x, y, yaw))
 
 
+@pytest.mark.slow
 def test_the_map_and_the_place_in_it(bench: Bench) -> None:
     true, odometry = bench.tour()
     assert np.hypot(*(odometry - true)[:2]) > 0.2
@@ -201,6 +202,7 @@ def test_a_sensor_without_a_transform_is_named_and_keeps_nobody_waiting(
     assert text.count("periscope to base_link") == 1
 
 
+@pytest.mark.slow
 def test_a_base_that_is_named_wrongly_and_missing_odometry_are_reported(
     stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -274,6 +276,7 @@ def test_a_reset_begins_a_new_map(bench: Bench) -> None:
     assert bench.believed(np.zeros(3)) == pytest.approx([0.0, 0.0], abs=0.02)
 
 
+@pytest.mark.slow
 def test_scans_can_be_throttled(stage: Callable[[dict[str, Any]], Stage]) -> None:
     bench = Bench(stage({"/slam_toolbox": {**PARAMETERS["/slam_toolbox"], "throttle_scans": 1000}}))
     for _ in range(50):

@@ -89,6 +89,7 @@ def stand(bench: Bench, condition: Callable[[], bool]) -> None:
     pytest.fail("the condition did not come to hold")
 
 
+@pytest.mark.slow
 def test_the_robot_is_localized_in_a_saved_map(start: Start, saved: Path, capfd: pytest.CaptureFixture[str]) -> None:
     bench = start(LocalizationSlamToolbox, map_file_name=str(saved), map_start_pose=[1.3, -1.8, 0.0])
     poses = bench.stage.collect(PoseWithCovarianceStamped, "pose", 10)
@@ -151,6 +152,7 @@ while True:
 """A program that saves a map again and again."""
 
 
+@pytest.mark.slow
 def test_a_killed_node_goes_on_from_its_saved_map(start: Start, saved: Path, tmp_path: Path) -> None:
     stem = tmp_path / "map"
     with subprocess.Popen([sys.executable, "-c", _SAVING, str(saved), str(stem)], stdout=subprocess.PIPE) as saving:

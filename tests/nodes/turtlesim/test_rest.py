@@ -70,6 +70,7 @@ print(json.dumps({"log": log, "updates": before, "heard": len(poses)}))
 """
 
 
+@pytest.mark.slow
 def test_turtles_that_nobody_watches_move_alike_and_rest(tmp_path: Path) -> None:
     result = run(sys.executable, script(tmp_path, PROGRAM), folder=tmp_path)
     assert result.returncode == 0, result.stderr

@@ -50,6 +50,7 @@ def test_a_mistake_is_named_with_its_line_and_the_way_to_it(run):
     assert "when instantiating macro: wheel (r.xacro)" in said
 
 
+@pytest.mark.slow
 def test_a_long_way_is_cut(run):
     status, _, said = run(ROBOT.replace("<xacro:wheel", "<xacro:include filename='r.xacro'/><xacro:wheel"), "r.xacro")
     assert status == 2

@@ -19,6 +19,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_good_files_pass_all(folder):
     assert ament_flake8.main.main_with_errors(argv=[]) == (0, [])
     assert ament_pep257.main.main(argv=["."]) == 0

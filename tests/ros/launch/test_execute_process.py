@@ -261,6 +261,7 @@ sys.stdout.buffer.write('grün'.encode()[3:]); sys.stdout.buffer.write(bytes([25
     ]
 
 
+@pytest.mark.slow
 def test_much_output_is_complete(run_launch, python):
     action = python("for i in range(20000): print(f'line {i}')", cached_output=True)
     run_launch(action)

@@ -2,6 +2,7 @@
 
 import signal
 
+import pytest
 from launch import LaunchContext
 from launch.actions import (
     EmitEvent,
@@ -30,6 +31,7 @@ def test_stop_in_order(run_launch, python, capsys):
     assert "failed to terminate" not in printed
 
 
+@pytest.mark.slow
 @posix
 def test_escalation(run_launch, python, capsys):
     action = python(STUBBORN, cached_output=True, sigterm_timeout="0.2", sigkill_timeout=["0.", "3"], name="stubborn")
@@ -106,6 +108,7 @@ def test_input_is_passed_on(run_launch, python):
     assert action.get_stdout() == "ready\ngot hello\n"
 
 
+@pytest.mark.slow
 @posix
 def test_what_a_process_started_is_stopped_with_it(run_launch):
     # A shell lets programs in the background ignore SIGINT.
@@ -118,6 +121,7 @@ def test_what_a_process_started_is_stopped_with_it(run_launch):
     assert not any(map(is_running, pids))
 
 
+@pytest.mark.slow
 @posix
 def test_stubborn_grandchildren_are_killed(run_launch, python):
     program = f"""
@@ -132,6 +136,7 @@ signal.pause()
     assert not is_running(int(action.get_stdout().split()[0]))
 
 
+@pytest.mark.slow
 @posix
 def test_what_a_process_left_behind_is_stopped_with_the_launch(run_launch, python):
     left = ExecuteProcess(cmd=["sleep 1000 & echo $!"], shell=True, cached_output=True)

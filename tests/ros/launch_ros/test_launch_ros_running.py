@@ -266,6 +266,7 @@ def test_container(capsys):
     assert "Failed to load node 'broken' of type 'Broken' in container '/outer/my_container': it is broken" in printed
 
 
+@pytest.mark.slow
 def test_loading_into_a_container_by_name(capsys):
     container = Node(package="p", executable="container", output="screen")
     run(
@@ -276,6 +277,7 @@ def test_loading_into_a_container_by_name(capsys):
     assert "LOAD pkg Last  last [] []" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_waiting_for_a_container_ends_with_the_launch(capsys):
     run(
         LoadComposableNodes(composable_node_descriptions=nodes()[:1], target_container="/nobody"),

@@ -172,6 +172,7 @@ def test_ready_in_an_event_handler(tmp_path):
     run(write(tmp_path / "a.test.py", body))
 
 
+@pytest.mark.slow
 def test_keeping_alive(tmp_path):
     body = """
     {marker}
@@ -468,6 +469,7 @@ def test_decorators_of_descriptions_combine():
         assert [function() for function, _ in decorated()] == [1, 2]
 
 
+@pytest.mark.slow
 def test_a_broken_file_does_not_keep_those_beside_it_from_being_tested(pytester):
     head = "import pytest, nowhere_to_be_found\n\n@pytest.mark.launch_test\ndef generate_test_description(): pass\n"
     pytester.makepyfile(test_broken=head, test_whole="def test_it(): pass\n")

@@ -92,6 +92,7 @@ def test_nothing_can_be_made_before_and_after() -> None:
         node.create_publisher(String, "chatter", 10)
 
 
+@pytest.mark.slow
 def test_who_asked_for_it_is_told_of_the_end_and_not_kept_alive_by_that() -> None:
     class Listener:
         def __init__(self) -> None:
@@ -145,6 +146,7 @@ def test_what_is_used_after_the_end_does_no_harm() -> None:
         node.get_name()
 
 
+@pytest.mark.slow
 def test_a_node_that_is_dropped_leaves_the_graph() -> None:
     with Context() as context:
         watcher = Node("watcher", context=context)
@@ -179,6 +181,7 @@ def _undo(destroy: Callable[[object], object], entity: object) -> Callable[[], o
     return lambda: destroy(entity)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", MAKERS)
 def test_entities_that_come_and_go_leave_nothing(kind: str) -> None:
     with Context() as context:
@@ -199,6 +202,7 @@ def test_entities_that_come_and_go_leave_nothing(kind: str) -> None:
         assert len(gc.get_objects()) - before < 60  # one for each would be 100
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="counts files as Linux lists them")
 def test_contexts_that_come_and_go_leave_nothing(monkeypatch: pytest.MonkeyPatch, domain: int) -> None:
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")

@@ -141,6 +141,7 @@ def rcl_level(name: str, level: int) -> object:
     return LoggerLevel(name=name, level=level)
 
 
+@pytest.mark.slow
 def test_the_logger_of_a_node_that_is_gone_has_no_children(graph: Context) -> None:
     node = Node("gone")
     logger = node.get_logger()

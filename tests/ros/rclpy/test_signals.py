@@ -151,6 +151,7 @@ except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals between threads are POSIX's")
 def test_a_signal_is_heard_although_another_thread_got_it() -> None:
     environment = os.environ | {"RMW_IMPLEMENTATION": "rmw_daidalos_inprocess"}
@@ -176,6 +177,21 @@ def test_handlers_of_others_are_seen_to_run_for_a_while(raised: list[int]) -> No
         here.join()
     assert signal.getsignal(signal.SIGINT) is open_gate
     assert signal.set_wakeup_fd(-1) == -1
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals between threads are POSIX's")
+def test_a_signal_that_was_handled_is_not_sent_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(signal_watch, "_TIMEOUT_S", 0.05)
+    handled: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: handled.append(number))
+    try:
+        with signal_watch.watching(signal.SIGINT):
+            for pause in (0.0, 0.01, 0.03, 0.05, 0.07, 0.2):
+                signal.raise_signal(signal.SIGINT)
+                time.sleep(pause)  # in different phases of the watching thread
+        assert len(handled) == 6
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_others_may_be_told_of_signals(raised: list[int]) -> None:

@@ -103,6 +103,7 @@ def test_other_names_and_only_some_topics(node, tmp_path):
     assert {name: len(one.values) for name, one in received.items()} == {"/a": 1, "/b": 1, "/c": 1, "/d": 1}
 
 
+@pytest.mark.slow
 def test_the_clock(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 50)
 

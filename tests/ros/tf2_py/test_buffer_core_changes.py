@@ -2,6 +2,7 @@
 
 import threading
 
+import pytest
 import tf2_py
 from rclpy.duration import Duration
 from tf2_py import BufferCore
@@ -56,6 +57,7 @@ def test_a_frame_may_become_static_and_movable_again() -> None:
 # Many threads
 
 
+@pytest.mark.slow
 def test_reading_while_writing() -> None:
     buffer = BufferCore(Duration(nanoseconds=2000))
     done = threading.Event()

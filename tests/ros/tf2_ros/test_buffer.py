@@ -103,6 +103,7 @@ def test_data_that_does_not_help_does_not_prolong_the_wait(buffer: Buffer) -> No
     thread.join()
 
 
+@pytest.mark.slow
 def test_waiting_costs_no_processor_time(buffer: Buffer) -> None:
     before = time.process_time()
     buffer.can_transform("a", "b", LATEST, Duration(seconds=0.5))
@@ -215,6 +216,7 @@ def test_turning_simulated_time_on_or_off_clears_the_buffer(node: Node) -> None:
         assert not buffer.can_transform("a", "b", at(1))
 
 
+@pytest.mark.slow
 def test_a_buffer_does_not_live_as_long_as_the_clock(node: Node) -> None:
     jumps = node.get_clock().handle._jumps
     for _ in range(2):

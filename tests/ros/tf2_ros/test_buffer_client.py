@@ -207,6 +207,7 @@ def test_a_server_that_refuses(graph: object, client: BufferClient) -> None:
         client.lookup_transform("a", "b", LATEST)
 
 
+@pytest.mark.slow
 def test_a_server_that_never_answers(node: Node) -> None:
     server = OtherServer(None)
     client = BufferClient(node, "lookup", timeout_padding=Duration(seconds=0.1))

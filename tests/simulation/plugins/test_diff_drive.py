@@ -67,6 +67,7 @@ def test_ten_turns_on_the_spot_within_a_thousandth(turn):
     assert math.hypot(*pose.position[:2]) < 0.005
 
 
+@pytest.mark.slow
 def test_an_arc_has_the_right_radius():
     _, true, _, odometry, pose = drive(turtlebot(), 0.2, 0.4, math.pi / 0.4)
     assert true == pytest.approx(math.pi, abs=0.15)

@@ -144,6 +144,7 @@ def test_a_battery_empties_under_its_load():
     assert charged.current == pytest.approx(2.0 + under.current, abs=0.1)
 
 
+@pytest.mark.slow
 def test_gzs_mecanum_drive_goes_sideways_and_knows_it():
     model = mecanum(drives=False)
     names = {"front_left": "fl_j", "front_right": "fr_j", "back_left": "rl_j", "back_right": "rr_j"}

@@ -64,6 +64,7 @@ def test_cameras_with_the_same_square_share_a_shadow_map() -> None:
     assert np.isfinite(one.depths).any()
 
 
+@pytest.mark.slow
 def test_a_map_that_no_camera_uses_is_dropped() -> None:
     maps = scene().share(ShadowMaps)
     light, ahead = np.array((0.0, 0.0, -1.0)), np.array((1.0, 0.0, 0.0))
@@ -74,6 +75,7 @@ def test_a_map_that_no_camera_uses_is_dropped() -> None:
     assert left() is None
 
 
+@pytest.mark.slow
 def test_the_scene_of_a_world_that_changed_is_freed() -> None:
     simulation = Simulation(world(box("crate", "3 0 0.5 0 0 0")))
     simulation.spawn(sdf.parse_model(EYE), "eye")

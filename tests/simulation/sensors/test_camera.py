@@ -216,6 +216,7 @@ def test_a_depth_camera_may_name_its_format():
     assert image(depths).encoding == "32FC1"
 
 
+@pytest.mark.slow
 def test_a_segmentation_camera_tells_classes_and_instances():
     label = "<plugin filename='gz-sim-label-system' name='l'><label>{}</label></plugin>"
     parts = [
@@ -253,6 +254,7 @@ def test_noise_has_the_spread_that_was_asked_for():
     assert np.corrcoef(seen[:, :-1].ravel(), seen[:, 1:].ravel())[0, 1] == pytest.approx(0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_lens_bends_straight_lines_as_opencv_undoes_it():
     squares = thing("ball", "2 0.6 1.4 0 0 0", BALL, "1 0 0 1")
     bent = "<distortion><k1>-0.25</k1><k2>0.06</k2><p1>0.001</p1><p2>0.002</p2><center>0.5 0.5</center></distortion>"

@@ -68,6 +68,7 @@ def test_worlds_for_gazebo_classic_mean_no_heading_by_180_degrees(heading):
     assert sample.latitude > float(PLACE.partition("<latitude_deg>")[2].partition("<")[0])
 
 
+@pytest.mark.slow
 def test_a_gps_has_the_noise_that_was_asked_for():
     settings = (
         "<gps><position_sensing>" + noise("horizontal", 2.0) + noise("vertical", 4.0) + "</position_sensing></gps>"

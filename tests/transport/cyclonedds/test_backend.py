@@ -42,6 +42,7 @@ def partner(role: str, domain: int) -> Peer:
     return Peer(role, script=PARTNER, ROS_DOMAIN_ID=str(domain), CYCLONEDDS_URI=LOCAL)
 
 
+@pytest.mark.slow
 def test_topics_cross(session, domain):
     node = node_of(session, "me")
     publisher = session.create_publisher(node, "/ping", String, Qos())
@@ -63,6 +64,7 @@ def test_topics_cross(session, domain):
     assert session.graph.wait_for(lambda: not publisher.has_subscribers, TIMEOUT_S)
 
 
+@pytest.mark.slow
 def test_a_request_and_its_reply_are_those_of_rmw_cyclonedds(session, domain):
     requests = Inbox()
     service = requests.entity = session.create_service(
@@ -95,6 +97,7 @@ def _environment(domain: int) -> dict[str, str]:
     return os.environ | {"ROS_DOMAIN_ID": str(domain), "CYCLONEDDS_URI": LOCAL}
 
 
+@pytest.mark.slow
 def test_others_are_told_of_nodes_and_what_is_theirs(session, domain):
     with partner("nodes", domain).ready() as watcher:
         node, remove = session.create_node("arm", "/cell", "/welding")
@@ -110,6 +113,7 @@ def test_others_are_told_of_nodes_and_what_is_theirs(session, domain):
         remove()
 
 
+@pytest.mark.slow
 def test_kept_samples_are_limited_by_the_depth_that_was_asked_for(session, domain):
     node = node_of(session, "me")
     qos = Qos(durability=Durability.TRANSIENT_LOCAL, depth=2)
@@ -127,6 +131,7 @@ def test_kept_samples_are_limited_by_the_depth_that_was_asked_for(session, domai
         other.close()
 
 
+@pytest.mark.slow
 def test_two_domains_do_not_meet(session, domain):
     other = Session(make_backend(Environment((domain + 1) % 230, middleware="rmw_cyclonedds_cpp")))
     try:

@@ -47,6 +47,7 @@ def peer(role: str, domain: int, uri: str = LOCAL) -> Peer:
     return Peer(role, script=SCRIPT, ROS_DOMAIN_ID=str(domain), CYCLONEDDS_URI=uri)
 
 
+@pytest.mark.slow
 def test_large_messages_within_the_depth_all_arrive(session, domain):
     node = node_of(session, "camera")
     publisher = session.create_publisher(node, "/image", Image, Qos(depth=5))
@@ -63,6 +64,7 @@ def test_large_messages_within_the_depth_all_arrive(session, domain):
         assert publisher.wait_for_acks(int(TIMEOUT_S * 1e9))
 
 
+@pytest.mark.slow
 def test_a_subscriber_that_stops_costs_messages_that_are_counted_and_named(session, domain, caplog):
     node = node_of(session, "camera")
     publisher = session.create_publisher(node, "/image", Image, Qos(depth=2))
@@ -87,6 +89,7 @@ def test_a_message_published_as_soon_as_dds_has_matched_arrives(session, domain)
         assert not session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/text")
 
 
+@pytest.mark.slow
 def test_settling_waits_for_a_participant_that_has_not_listed_its_nodes(domain):
     with peer("slow_node", domain).ready():
         session = Session(make_backend(Environment(domain, middleware="rmw_cyclonedds_cpp")))
@@ -97,6 +100,7 @@ def test_settling_waits_for_a_participant_that_has_not_listed_its_nodes(domain):
             session.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reach", [DiscoveryRange.LOCALHOST, DiscoveryRange.SUBNET])
 def test_a_program_of_ros_2s_default_range_hears_us_whoever_starts_first(domain, reach):
     with peer("texts", domain, SUBNET).ready() as earlier:
@@ -110,6 +114,7 @@ def test_a_program_of_ros_2s_default_range_hears_us_whoever_starts_first(domain,
             session.close()
 
 
+@pytest.mark.slow
 def test_our_own_program_of_the_wider_range_hears_one_of_the_narrower(domain, session):
     publisher = session.create_publisher(node_of(session, "talker"), "/topic", Int32, Qos())
     wider = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}

@@ -279,6 +279,7 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
+@pytest.mark.slow
 def test_a_router_joins_who_would_not_meet_and_may_come_late(domain, tmp_path, monkeypatch):
     port = free_port()
     sessions = []
@@ -301,6 +302,7 @@ def test_a_router_joins_who_would_not_meet_and_may_come_late(domain, tmp_path, m
         two.close()
 
 
+@pytest.mark.slow
 def test_a_port_that_is_taken_is_an_error_in_words(monkeypatch):
     port = free_port()
     router = router_at(port, monkeypatch)
@@ -346,6 +348,7 @@ def tls_file(folder: Path, who: str, mode: str, endpoint: str) -> Path:
     return file
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="there is no openssl to make certificates with")
 def test_with_tls_only_those_with_a_certificate_meet(domain, tmp_path, monkeypatch):
     certificates(tmp_path)

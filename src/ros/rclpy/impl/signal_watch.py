@@ -1,13 +1,15 @@
 """Seeing to it that the handler of a signal runs.
 
 Python runs handlers in the main thread. A signal that comes just before that thread begins to wait, or that the system
-hands to another thread, does not wake it: the handler would run when something else does, perhaps never. So another
-thread receives every signal (`signal.set_wakeup_fd`) and sends it to the main thread again if nothing has happened.
+hands to another thread, does not wake it: the handler would run when something else does, perhaps never. So the numbers
+of all signals go into a pipe (`signal.set_wakeup_fd`) that a handler empties when it runs, and another thread sends a
+signal to the main thread again whose number stays there.
 """
 
 from __future__ import annotations
 
 import os
+import select
 import signal
 import threading
 import time
@@ -19,6 +21,7 @@ from typing import Any
 
 _TIMEOUT_S = 0.1
 _runs = 0
+_reader: int | None = None
 _writer: int | None = None
 _watched: weakref.WeakSet[Any] = weakref.WeakSet()
 
@@ -29,6 +32,8 @@ def watched(handler: Callable[[int, FrameType | None], Any]) -> Callable[[int, F
     def run(number: int, frame: FrameType | None) -> Any:
         global _runs
         _runs += 1
+        if _reader is not None:
+            _take(_reader)
         return handler(number, frame)
 
     _watched.add(run)
@@ -37,31 +42,32 @@ def watched(handler: Callable[[int, FrameType | None], Any]) -> Callable[[int, F
 
 def start() -> None:
     """Start watching, unless other code, such as asyncio, receives the signals; only the main thread can."""
-    global _writer
+    global _reader, _writer
     if _writer is not None or not hasattr(signal, "pthread_kill"):
         return
     reader, writer = os.pipe()
-    os.set_blocking(writer, False)
+    for end in (reader, writer):
+        os.set_blocking(end, False)
     other = signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
     if other != -1:
         signal.set_wakeup_fd(other)
         os.close(reader)
         os.close(writer)
         return
-    _writer = writer
+    _reader, _writer = reader, writer
     threading.Thread(target=_watch, args=(reader,), name="signals", daemon=True).start()
 
 
 def stop() -> None:
     """Stop watching; only the main thread can."""
-    global _writer
+    global _reader, _writer
     if _writer is None:
         return
     present = signal.set_wakeup_fd(-1)
     if present not in (-1, _writer):
         signal.set_wakeup_fd(present)
     os.close(_writer)
-    _writer = None
+    _reader = _writer = None
 
 
 @contextmanager
@@ -84,24 +90,38 @@ def watching(number: int) -> Iterator[None]:
 
 def _watch(reader: int) -> None:
     main = threading.main_thread()
-    seen, resent = _runs, 0
-    while numbers := os.read(reader, 64):
-        fresh, resent = numbers[resent:], max(resent - len(numbers), 0)
-        if fresh:
-            time.sleep(_TIMEOUT_S)
-            if main.ident is not None and _runs == seen and signal.getsignal(fresh[-1]) in _watched:
-                resent += 1
-                signal.pthread_kill(main.ident, fresh[-1])
-        seen = _runs
+    poll = select.poll()
+    poll.register(reader, select.POLLIN)
+    resent = -1  # the number of runs there had been when a signal was sent again
+    while True:
+        poll.poll()
+        before = _runs
+        time.sleep(_TIMEOUT_S)
+        if _runs != before:
+            continue  # what is in the pipe now came later, and has its own time
+        numbers = _take(reader)
+        if numbers is None:
+            break
+        if numbers and _runs != resent and main.ident is not None and signal.getsignal(numbers[-1]) in _watched:
+            resent = _runs
+            signal.pthread_kill(main.ident, numbers[-1])
     os.close(reader)
+
+
+def _take(reader: int) -> bytes | None:
+    """Return the numbers of the signals in the pipe, and None when its other end is closed."""
+    try:
+        return os.read(reader, 64) or None
+    except BlockingIOError:
+        return b""
 
 
 def _forget() -> None:
     """Disconnect a forked process: the watching thread exists only in its parent."""
-    global _writer
+    global _reader, _writer
     if _writer is not None:
         signal.set_wakeup_fd(-1)
-        _writer = None
+        _reader = _writer = None
 
 
 if hasattr(os, "register_at_fork"):
