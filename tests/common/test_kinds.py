@@ -4,6 +4,7 @@ import inspect
 import pkgutil
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
@@ -43,3 +44,12 @@ def test_names_that_are_read_from_files_are_those_of_the_classes(kind) -> None:
 def test_no_name_means_two_classes(kind) -> None:
     names = [name for extension in listing(kind) for name in extension.names]
     assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+def test_the_table_of_the_manual_names_the_kind_and_its_contract(kind) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
+    rows = [line for line in page.splitlines() if line.startswith("|") and f"`{kind.name}`" in line]
+    assert len(rows) == 1
+    assert f"`{kind.group}`" in rows[0]
+    assert f"{kind.contract.partition(':')[2]}`" in rows[0]

@@ -16,7 +16,8 @@ from daidalos.mapping.errors import LineError, MappingError
 from daidalos.mapping.log import read_log
 from daidalos.mapping.scan import LaserScanData
 from daidalos.mapping.text_file import nanoseconds, seconds_text
-from daidalos.mapping.trajectory import Trajectory, read_trajectory, write_trajectory
+from daidalos.mapping.trajectory import Trajectory
+from daidalos.mapping.trajectory_file import read_trajectory, write_trajectory
 
 AS_FILES = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=40)
 poses_of = st.lists(st.tuples(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(-3.1, 3.1)), min_size=1, max_size=4)

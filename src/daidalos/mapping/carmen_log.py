@@ -13,6 +13,8 @@ from daidalos.mapping.scan import LaserScanData
 from daidalos.mapping.text_file import nanoseconds, read_lines, seconds_text, write_lines
 from daidalos.mapping.trajectory import Stamps, Trajectory, sorted_trajectory
 
+CARMEN_SUFFIXES = (".log", ".clf", ".carmen")
+
 MAX_RANGE = 80.0
 """Range [m] from which readings mean that nothing was seen; lasers of that time report 81.83 and 81.91."""
 

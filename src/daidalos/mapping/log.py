@@ -14,10 +14,12 @@ from daidalos.common import pose2
 from daidalos.common.arrays import Array
 from daidalos.common.pose3 import yaw_from_quaternion
 from daidalos.interfaces.codec import CdrError, Codec, codec_of
+from daidalos.mapping.carmen_log import CARMEN_SUFFIXES, read_carmen
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
 from daidalos.mapping.scan import LaserScanData
-from daidalos.mapping.trajectory import CARMEN_SUFFIXES, Stamps, format_suffix
+from daidalos.mapping.text_file import format_suffix
+from daidalos.mapping.trajectory import Stamps
 
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -153,8 +155,6 @@ def _collect(bag: Path, reader: BagReader, scan_topic: str | None, odom_topic: s
 
 def _read_carmen(path: Path) -> Log:
     """Read a log of CARMEN."""
-    from daidalos.mapping.carmen_log import read_carmen
-
     found = read_carmen(path)
     times, stamps = np.array(found.scan_stamps_ns), np.array(found.odometry_stamps_ns)
     order, rows = np.argsort(times, kind="stable"), np.argsort(stamps, kind="stable")

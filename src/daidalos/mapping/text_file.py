@@ -61,3 +61,8 @@ def seconds_text(stamp_ns: int) -> str:
     """Return nanoseconds as decimal seconds."""
     sign = "-" if stamp_ns < 0 else ""
     return f"{sign}{abs(stamp_ns) // 10**9}.{abs(stamp_ns) % 10**9:09d}"
+
+
+def format_suffix(path: Path) -> str:
+    """Return the suffix that names a file's format, without the ``.gz`` of a compressed one."""
+    return Path(path.stem if path.suffix.lower() == ".gz" else path.name).suffix.lower()

@@ -188,9 +188,10 @@ def _errors(path: Path, stamps_ns: Any, poses: Any, relations: "Relations") -> "
 
 def _write_trajectory(path: Path, log: "Log", mapped: "LogMap") -> None:
     """Write a trajectory in the format of its suffix."""
-    from daidalos.mapping.carmen_log import write_carmen
+    from daidalos.mapping.carmen_log import CARMEN_SUFFIXES, write_carmen
     from daidalos.mapping.g2o_file import write_g2o
-    from daidalos.mapping.trajectory import CARMEN_SUFFIXES, Trajectory, write_trajectory
+    from daidalos.mapping.trajectory import Trajectory
+    from daidalos.mapping.trajectory_file import write_trajectory
 
     suffix = path.suffix.lower()
     if suffix in CARMEN_SUFFIXES:
@@ -205,7 +206,7 @@ def _compare(first: Path, second: Path, delta: float) -> dict[str, Any]:
     """Return the errors of one trajectory or map against another."""
     from daidalos.mapping.comparison import compare_trajectories, compare_with_relations
     from daidalos.mapping.evaluation import compare_with_truth, read_relations
-    from daidalos.mapping.trajectory import read_trajectory
+    from daidalos.mapping.trajectory_file import read_trajectory
 
     if {first.suffix, second.suffix} & {".yaml", ".yml"}:
         from daidalos.mapping.map_file import load_map
