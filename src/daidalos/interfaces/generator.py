@@ -15,7 +15,12 @@ from daidalos.interfaces.message_source import alias, message_source, short_name
 
 
 def write_package(package: str, interfaces: Iterable[Interface], lookup: Lookup, target: Path) -> list[Path]:
-    """Write `target`/`package` with one module per interface.
+    """Write the package to its folder in `target`, which is on the import path; see `write_modules`."""
+    return write_modules(package, interfaces, lookup, target / package)
+
+
+def write_modules(package: str, interfaces: Iterable[Interface], lookup: Lookup, folder: Path) -> list[Path]:
+    """Write the Python package of an interface package, with one module per interface.
 
     Parameters
     ----------
@@ -25,15 +30,14 @@ def write_package(package: str, interfaces: Iterable[Interface], lookup: Lookup,
         Its definitions.
     lookup
         Finds the definitions of referenced types.
-    target
-        A folder on the import path.
+    folder
+        The Python package's folder.
 
     Returns
     -------
     list of Path
         The files of the package; those whose content did not change are left untouched.
     """
-    folder = target / package
     written = [_write(folder / "__init__.py", f'"""Interfaces of the ROS package {package}."""\n')]
     by_kind: dict[str, list[Interface]] = {}
     for interface in interfaces:

@@ -6,8 +6,10 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
+from daidalos.common.errors import Location
 from daidalos.interfaces.definition import Action, Interface, Message
-from daidalos.interfaces.parser import parse_file
+from daidalos.interfaces.idl import IdlInterface, read_idl
+from daidalos.interfaces.parser import InterfaceError, parse, parse_file
 
 KINDS = ("msg", "srv", "action")
 BUILT_IN = Path(__file__).resolve().parent.parent / "share"
@@ -23,7 +25,7 @@ class Library:
     Parameters
     ----------
     shares
-        Folders that hold ``<package>/<msg|srv|action>/<Name>.<msg|srv|action>``.
+        Folders that hold ``<package>/<msg|srv|action>/<Name>.<msg|srv|action>``, or ``.idl`` where there is none.
     """
 
     def __init__(self, shares: Iterable[Path] = (BUILT_IN,)) -> None:
@@ -37,7 +39,7 @@ class Library:
             for share in self._shares
             for kind in KINDS
             for folder in share.glob(f"*/{kind}")
-            if any(folder.glob(f"*.{kind}"))
+            if any(folder.glob(f"*.{kind}")) or any(folder.glob("*.idl"))
         }
         return sorted(names)
 
@@ -46,7 +48,7 @@ class Library:
         for share in self._shares:
             found = list(_files(share / package))
             if found:
-                return [f"{package}/{path.suffix[1:]}/{path.stem}" for path in found]
+                return list(dict.fromkeys(f"{package}/{path.parent.name}/{path.stem}" for path in found))
         return []
 
     def path(self, name: str) -> Path:
@@ -59,9 +61,10 @@ class Library:
         """
         package, kind, short = name.split("/")
         for share in self._shares:
-            path = share / package / kind / f"{short}.{kind}"
-            if path.is_file():
-                return path
+            for suffix in (kind, "idl"):
+                path = share / package / kind / f"{short}.{suffix}"
+                if path.is_file():
+                    return path
         raise InterfaceNotFound(f"no definition of '{name}'")
 
     def get(self, name: str) -> Interface:
@@ -75,7 +78,7 @@ class Library:
         base, part = _split(name)
         path = self.path(base)
         if path not in self._parsed:
-            self._parsed[path] = parse_file(path, base.split("/")[0])
+            self._parsed[path] = read_definition(path, base.split("/")[0])
         interface = self._parsed[path]
         if not part:
             return interface
@@ -85,9 +88,47 @@ class Library:
         raise InterfaceNotFound(f"'{base}' has no part '{part}'")
 
 
+def read_definition(path: Path, package: str) -> Interface:
+    """Read a .msg, .srv, .action or .idl file of a package.
+
+    Raises
+    ------
+    InterfaceError
+        Naming the file and the line at fault.
+    """
+    if path.suffix != ".idl":
+        return parse_file(path, package)
+    found = _read_idl(path)
+    if found.package != package:
+        raise InterfaceError(
+            f"its module is '{found.package}', expected '{package}' as the package is called", Location(str(path))
+        )
+    return parse(found.text, package, found.kind, found.name, str(path))
+
+
+def definition_text(path: Path) -> str:
+    """Return what a file says as a .msg, .srv or .action file, which it may be.
+
+    Raises
+    ------
+    InterfaceError
+        Naming the file and the line at fault.
+    """
+    return _read_idl(path).text if path.suffix == ".idl" else path.read_text(encoding="utf-8")
+
+
+def _read_idl(path: Path) -> IdlInterface:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InterfaceError(f"byte {error.start} is not valid UTF-8", Location(str(path))) from None
+    return read_idl(text, path.stem, str(path))
+
+
 def _files(package: Path) -> Iterator[Path]:
     for kind in KINDS:
-        yield from sorted((package / kind).glob(f"*.{kind}"))
+        folder = package / kind
+        yield from sorted([*folder.glob(f"*.{kind}"), *folder.glob("*.idl")], key=lambda path: path.stem)
 
 
 def _split(name: str) -> tuple[str, str]:

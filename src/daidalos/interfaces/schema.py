@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from daidalos.interfaces.definition import Message
-from daidalos.interfaces.library import Library
+from daidalos.interfaces.library import Library, definition_text
 
 _SEPARATOR = "=" * 80
 
@@ -39,12 +39,12 @@ def _text(name: str, library: Library) -> str:
     """Return the text that defines a message: a file, or the part of one between its ``---`` lines."""
     package, kind, short = name.split("/")
     if kind == "msg":
-        return library.path(name).read_text(encoding="utf-8")
+        return definition_text(library.path(name))
     base, _, part = short.partition("_")
     parts = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}[kind]
     if part in parts:
         sections = [[]]  # type: list[list[str]]
-        for line in library.path(f"{package}/{kind}/{base}").read_text(encoding="utf-8").splitlines():
+        for line in definition_text(library.path(f"{package}/{kind}/{base}")).splitlines():
             if line.strip() == "---":
                 sections.append([])
             else:

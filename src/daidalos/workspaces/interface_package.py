@@ -13,9 +13,8 @@ from daidalos.common.suggestions import hint
 from daidalos.interfaces.definition import Interface, messages_of
 from daidalos.interfaces.description import Description, IndividualDescription, Lookup, describe
 from daidalos.interfaces.generator import write_package
-from daidalos.interfaces.idl import read_idl
-from daidalos.interfaces.library import BUILT_IN, InterfaceNotFound, Library
-from daidalos.interfaces.parser import InterfaceError, parse, parse_file
+from daidalos.interfaces.library import BUILT_IN, InterfaceNotFound, Library, read_definition
+from daidalos.interfaces.parser import InterfaceError
 from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.installation import Installation
 
@@ -44,48 +43,27 @@ def install_interfaces(
         Naming the file and the line at fault.
     """
     try:
-        read = {path: _read(path, package) for path in files}
+        own = {path: read_definition(path, package) for path in files}
     except InterfaceError as error:
         raise WorkspaceError(str(error)) from None
-    for path, (interface, text) in read.items():
-        kind = interface.name.split("/")[1]
-        installation.put(path, f"share/{package}/{kind}/{path.name}")
-        if text is not None:
-            installation.write(f"share/{package}/{kind}/{path.stem}.{kind}", text)
-    own = {interface.name: (path, interface) for path, (interface, _) in read.items()}
+    for path, interface in own.items():
+        installation.put(path, f"share/{package}/{interface.name.split('/')[1]}/{path.name}")
     prefixes = [installation.prefix, *prefixes]
     library = Library([*(prefix / "share" for prefix in prefixes), BUILT_IN])
     known = _known_messages(library)
-    for path, interface in own.values():
+    for path, interface in own.items():
         _check_references(path, interface, library.get, known)
-    interfaces = [interface for _, interface in own.values()]
-    for path in write_package(package, interfaces, library.get, installation.prefix / python_folder):
+    for path in write_package(package, own.values(), library.get, installation.prefix / python_folder):
         installation.register_installed(path)
-    for name, (path, interface) in own.items():
+    for interface in own.values():
         text = json.dumps(_described(describe(interface, library.get)), indent=2) + "\n"
-        installation.write(f"share/{package}/{name.split('/')[1]}/{path.stem}.json", text)
-    index = sorted(f"{name.split('/', 1)[1]}{suffix}" for name in own for suffix in _suffixes(name))
+        installation.write(f"share/{interface.name}.json", text)
+    index = sorted(
+        f"{interface.name.split('/', 1)[1]}{suffix}"
+        for path, interface in own.items()
+        for suffix in (".json", path.suffix)
+    )
     installation.write(f"share/ament_index/resource_index/rosidl_interfaces/{package}", "\n".join(index))
-
-
-def _read(path: Path, package: str) -> tuple[Interface, str | None]:
-    """Return the interface of a file, and its text as .msg, .srv or .action."""
-    if path.suffix != ".idl":
-        return parse_file(path, package), None
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InterfaceError(f"byte {error.start} is not valid UTF-8", Location(str(path))) from None
-    found = read_idl(text, path.stem, str(path))
-    if found.package != package:
-        raise InterfaceError(
-            f"its module is '{found.package}', expected '{package}' as the package is called", Location(str(path))
-        )
-    return parse(found.text, package, found.kind, found.name, str(path)), found.text
-
-
-def _suffixes(name: str) -> tuple[str, str]:
-    return (".json", f".{name.split('/')[1]}")
 
 
 def _known_messages(library: Library) -> list[str]:

@@ -12,6 +12,7 @@ from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.interface_arguments import add_type_argument
 from daidalos.interfaces.definition import PRIMITIVES
+from daidalos.interfaces.library import definition_text
 
 
 class Comments(Enum):
@@ -65,7 +66,7 @@ def definition_lines(name: str, comments: Comments, depth: int = 0) -> Iterator[
     """
     shown = comments is Comments.ALL or (comments is Comments.OUTER and depth == 0)
     package = name.split("/")[0]
-    for line in _path(name).read_text(encoding="utf-8").splitlines():
+    for line in definition_text(_path(name)).splitlines():
         content = _without_comment(line)
         text = line.rstrip() if shown else content
         if text or shown:

@@ -1,0 +1,24 @@
+"""Conversion of .srv files to .idl files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ._idl import convert
+
+
+def convert_srv_to_idl(package_dir: Path, package_name: str, input_file: Path, output_dir: Path) -> Path:
+    """Write the .idl file of a .srv file and return its path.
+
+    Parameters
+    ----------
+    package_dir
+        The package's folder, absolute.
+    package_name
+        The package's name.
+    input_file
+        The file, relative to `package_dir`.
+    output_dir
+        Folder to write to.
+    """
+    return convert("srv", package_dir, package_name, input_file, output_dir)

@@ -1,0 +1,1 @@
+"""Code generation from interface definitions, and their translation, under rosidl's names."""

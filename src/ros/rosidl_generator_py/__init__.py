@@ -1,0 +1,1 @@
+"""Generator of Python classes for `rosidl generate`, under rosidl's name."""
