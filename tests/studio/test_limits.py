@@ -2,11 +2,14 @@
 
 import asyncio
 import contextlib
+import gc
 import json
 import logging
 import socket
 import struct
+import threading
 import time
+import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -15,6 +18,7 @@ import pytest
 
 from daidalos.studio import connections
 from daidalos.studio import stream_client as client_module
+from daidalos.studio.access import Refusal, Request
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.connections import Connection, Connections
 from daidalos.studio.frames import asset_head
@@ -381,3 +385,41 @@ def test_what_a_client_sends_at_once_becomes_messages_piece_by_piece():
         return parser.pieces
 
     assert max(asyncio.run(main())) <= PIECE_BYTES
+
+
+def test_of_requests_that_come_together_one_begins_in_each_step_of_the_event_loop(server, monkeypatch):
+    step, begun, stands = 0, [], threading.Event()
+    refusal = server._access.refusal
+
+    def count() -> None:
+        nonlocal step
+        step += 1
+        asyncio.get_running_loop().call_soon(count)
+
+    def note(request: Request) -> Refusal | None:
+        begun.append(step)
+        return refusal(request)
+
+    monkeypatch.setattr(server._access, "refusal", note)
+    with contextlib.ExitStack() as opened:
+        clients = [opened.enter_context(raw(server)) for _ in range(20)]
+        until(lambda: len(server._connections._open) == len(clients))
+        server._soon(lambda: stands.wait(TIMEOUT_S))
+        for client in clients:
+            client.sendall(HANDSHAKE)
+        server._soon(count)
+        stands.set()
+        until(lambda: server.client_count == len(clients))
+    assert len(set(begun)) == len(clients)
+
+
+def test_what_a_client_held_is_freed_without_the_garbage_collector(server):
+    gc.collect()
+    gc.disable()
+    try:
+        with raw(server, HANDSHAKE):
+            until(lambda: server.client_count == 1)
+            (client,) = map(weakref.ref, server._clients)
+        until(lambda: server.client_count == 0 and client() is None)
+    finally:
+        gc.enable()

@@ -101,6 +101,7 @@ class GuardedServer:
         self._access = AccessPolicy(allowed_hosts, allowed_origins, token)
         self._connections = Connections()
         self._turns = asyncio.Lock()
+        self._entry = asyncio.Lock()
         self._sockets: set[web.WebSocketResponse] = set()
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -249,6 +250,8 @@ class GuardedServer:
         connection = self._connections.of(request.protocol)
         if connection is not None:
             connection.complete()
+        async with self._entry:  # of many requests that come together, one begins in each step of the event loop
+            await asyncio.sleep(0)
         refusal = too_long(request) or self._access.refusal(identify(request, self._port)) or self._other_user(request)
         if refusal is not None:
             self._refused(request, refusal)
@@ -300,3 +303,7 @@ class GuardedServer:
             await client.run()
         finally:
             self._sockets.discard(opened)
+            error = opened.exception()
+            while error is not None:
+                error.__traceback__ = None  # its frames refer to the connection, which only the collector would free
+                error = error.__context__

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 MAX_PORTS_TRIED = 64
 BACKLOG = 128
 """Connections that wait in the system to be accepted."""
-ACCEPTED_AT_ONCE = 8
+ACCEPTED_AT_ONCE = 1
 """Connections that are accepted before the event loop does something else."""
 ANY_ADDRESS = frozenset({"0.0.0.0", "::", ""})
 """Addresses that stand for every address of this machine."""

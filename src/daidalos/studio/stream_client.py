@@ -61,8 +61,8 @@ class StreamClient:
         self._closing: asyncio.Task[None] | None = None
         self._sending_bytes = 0
         loop = asyncio.get_running_loop()
-        self._awake = asyncio.Event()
-        self.outbox = Outbox(lambda: _wake(loop, self._awake), make_frame)
+        self._awake = awake = asyncio.Event()
+        self.outbox = Outbox(lambda: _wake(loop, awake), make_frame)  # without a reference to the client: no cycle
 
     async def run(self) -> None:
         """Receive and send until the connection ends, a limit is passed or the server stops."""
