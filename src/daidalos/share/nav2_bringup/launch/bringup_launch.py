@@ -13,6 +13,7 @@ ARGUMENTS = [
     ("namespace", "", "namespace of all nodes"),
     ("slam", "False", "whether the map is made while driving"),
     ("map", "", "map file, without SLAM"),
+    ("graph", "", "file of the graph of routes; starts the route server"),
     ("use_localization", "True", "whether map and localization are started"),
     ("use_sim_time", "false", "whether the simulator's clock is used"),
     ("autostart", "true", "whether the nodes are activated at once"),
@@ -64,7 +65,7 @@ def generate_launch_description():
                         map=value("map"),
                         **composed,
                     ),
-                    included("navigation_launch.py", None, **composed),
+                    included("navigation_launch.py", None, graph=value("graph"), **composed),
                 ]
             ),
         ]

@@ -1,7 +1,11 @@
 """The navigation stack, each server in a process or all in a container.
 
 Commands of the controller and the behaviours go through the velocity smoother and the collision monitor to `cmd_vel`.
+The docking server and the route server are started where the parameter file has something for them.
 """
+
+import re
+from pathlib import Path
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -17,12 +21,16 @@ SERVERS = [
     ("nav2_controller", "controller_server", "nav2_controller::ControllerServer", COMMANDS),
     ("nav2_smoother", "smoother_server", "nav2_smoother::SmootherServer", []),
     ("nav2_planner", "planner_server", "nav2_planner::PlannerServer", []),
+    ("nav2_route", "route_server", "nav2_route::RouteServer", []),
     ("nav2_behaviors", "behavior_server", "behavior_server::BehaviorServer", COMMANDS),
     ("nav2_velocity_smoother", "velocity_smoother", "nav2_velocity_smoother::VelocitySmoother", COMMANDS),
     ("nav2_collision_monitor", "collision_monitor", "nav2_collision_monitor::CollisionMonitor", []),
     ("nav2_bt_navigator", "bt_navigator", "nav2_bt_navigator::BtNavigator", []),
     ("nav2_waypoint_follower", "waypoint_follower", "nav2_waypoint_follower::WaypointFollower", []),
+    ("opennav_docking", "docking_server", "opennav_docking::DockingServer", []),
 ]
+OPTIONAL = ("route_server", "docking_server")
+EXECUTABLES = {"docking_server": "opennav_docking"}
 MANAGER = ("nav2_lifecycle_manager", "lifecycle_manager", "nav2_lifecycle_manager::LifecycleManager")
 ARGUMENTS = [
     ("namespace", "", "namespace of all nodes"),
@@ -31,6 +39,7 @@ ARGUMENTS = [
     ("use_composition", "False", "whether the nodes are loaded into a container"),
     ("container_name", "nav2_container", "name of that container"),
     ("use_respawn", "True", "whether a process that ends is started again"),
+    ("graph", "", "file of the graph of routes; starts the route server"),
     ("log_level", "info", "log level"),
 ]
 
@@ -58,10 +67,18 @@ def nodes(context):
         source_file=value("params_file"), root_key=value("namespace"), param_rewrites={}, convert_types=True
     )
     given = ParameterFile(file, allow_substs=True)
+    graph = value("graph").perform(context)
+    path = Path(value("params_file").perform(context))
+    text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+    servers = [server for server in SERVERS if is_wanted(server[1], text, graph)]
+    of_server = {"route_server": [given, {"graph_filepath": graph}]} if graph else {}
     transforms = [("/tf", "tf"), ("/tf_static", "tf_static")]
-    manager = {"autostart": value("autostart"), "node_names": [name for _, name, *_ in SERVERS]}
+    manager = {"autostart": value("autostart"), "node_names": [name for _, name, *_ in servers]}
     listed = [
-        *((package, name, plugin, name, [given], remappings) for package, name, plugin, remappings in SERVERS),
+        *(
+            (package, EXECUTABLES.get(name, name), plugin, name, of_server.get(name, [given]), remappings)
+            for package, name, plugin, remappings in servers
+        ),
         (*MANAGER, "lifecycle_manager_navigation", [given, manager], []),
     ]
     processes = [
@@ -97,3 +114,10 @@ def nodes(context):
         condition=IfCondition(value("use_composition")),
     )
     return [*processes, load]
+
+
+def is_wanted(name, text, graph):
+    """Return whether a server is started: one that not all robots need, where the parameters or the graph name it."""
+    if name not in OPTIONAL or (name == "route_server" and graph):
+        return True
+    return re.search(rf"^\s*['\"]?(/\S*/)?{name}['\"]?:", text, re.MULTILINE) is not None
