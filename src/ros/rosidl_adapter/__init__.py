@@ -24,7 +24,7 @@ def convert_to_idl(package_dir: Path, package_name: str, interface_file: Path, o
     ValueError
         For a file of another kind.
     """
-    from ._idl import convert
+    from .idl import convert
 
     kind = interface_file.suffix[1:]
     return convert(kind, package_dir, package_name, interface_file, output_dir / kind)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ._idl import convert
+from .idl import convert
 
 
 def convert_action_to_idl(package_dir: Path, package_name: str, input_file: Path, output_dir: Path) -> Path:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ._idl import MSG_TYPE_TO_IDL as MSG_TYPE_TO_IDL
-from ._idl import convert
-from ._idl import get_idl_type as get_idl_type
-from ._idl import get_include_file as get_include_file
-from ._idl import string_to_idl_string_literal as string_to_idl_string_literal
-from ._idl import to_idl_literal as to_idl_literal
+from .idl import MSG_TYPE_TO_IDL as MSG_TYPE_TO_IDL
+from .idl import convert
+from .idl import get_idl_type as get_idl_type
+from .idl import get_include_file as get_include_file
+from .idl import string_to_idl_string_literal as string_to_idl_string_literal
+from .idl import to_idl_literal as to_idl_literal
 
 
 def convert_msg_to_idl(package_dir: Path, package_name: str, input_file: Path, output_dir: Path) -> Path:
