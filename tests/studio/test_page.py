@@ -532,6 +532,8 @@ def test_a_layout_is_saved_and_opened(browser, source, robot, tmp_path):
         browser.click_on("input[aria-label='Show Laser scan']")
         browser.evaluate("URL.createObjectURL = (blob) => { window.saved = blob.text(); return 'data:,'; }")
         browser.click_on("[data-test=file]")
+        cut = "[...document.querySelectorAll('.menu-item *')].filter((e) => e.scrollWidth > e.clientWidth)"
+        assert browser.evaluate(f"{cut}.map((e) => e.textContent)") == []
         browser.evaluate(
             "[...document.querySelectorAll('.menu-item')].find((e) => e.textContent.includes('Save layout')).click()"
         )

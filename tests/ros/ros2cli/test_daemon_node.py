@@ -32,9 +32,25 @@ def daemon(domain):
         shutdown_daemon(None, timeout=10.0)
 
 
+# The functions of ros2cli's own daemon, which public tools call.
+FUNCTIONS = {
+    *("get_name", "get_namespace", "get_node_names_and_namespaces", "get_node_names_and_namespaces_with_enclaves"),
+    *("get_topic_names_and_types", "get_service_names_and_types", "get_action_names_and_types"),
+    *("get_publisher_names_and_types_by_node", "get_publishers_info_by_topic", "get_subscriptions_info_by_topic"),
+    *("get_subscriber_names_and_types_by_node", "get_service_names_and_types_by_node"),
+    *("get_client_names_and_types_by_node", "get_action_server_names_and_types_by_node"),
+    *("get_action_client_names_and_types_by_node", "count_publishers", "count_subscribers", "count_clients"),
+    *("count_services", "system.listMethods", "system.methodHelp", "system.methodSignature", "system.shutdown"),
+}
+
+
 @pytest.mark.slow
 def test_the_daemon_answers_as_a_node(daemon):
     assert daemon.connected
+    assert set(daemon.system.listMethods()) >= FUNCTIONS
+    assert not any(name.startswith("system.") for name in daemon.methods)
+    assert all(daemon.system.methodHelp(name) for name in FUNCTIONS)
+    assert daemon.system.methodHelp("no_method") == ""
     assert ["driver", "/"] in daemon.get_node_names_and_namespaces()
     assert ["/speech", ["std_msgs/msg/String"]] in daemon.get_topic_names_and_types()
     assert daemon.count_publishers("/speech") == 1
@@ -66,3 +82,14 @@ def test_a_node_is_made_anew_when_the_network_changes(monkeypatch):
         assert node.get_node_names()
         assert node.node is not before
     assert not rclpy.ok()
+
+
+@pytest.mark.slow
+def test_a_daemon_that_was_started_in_the_background_is_used_next(domain):
+    try:
+        with NodeStrategy(None) as node:
+            assert node.daemon_node is None
+        with NodeStrategy(None) as node:
+            assert node.daemon_node is not None
+    finally:
+        shutdown_daemon(None, timeout=10.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from typing import TYPE_CHECKING, Any
 
 from ros2cli.daemon.protocol import Address, AddressFile, ask, graph_from_json
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 _START_TIMEOUT_S = 10.0
 _STATUS_TIMEOUT_S = 5.0
 """A daemon that has ended refuses at once; one on a loaded machine answers late."""
+_POLL_S = 0.01
 
 
 def fetch_graph() -> Graph | None:
@@ -23,8 +25,17 @@ def fetch_graph() -> Graph | None:
 
 
 def is_running() -> bool:
-    """Return whether the daemon runs."""
-    return _ask("status", _STATUS_TIMEOUT_S) is not None
+    """Return whether the daemon runs; one that this process has started in the background is waited for."""
+    if _ask("status", _STATUS_TIMEOUT_S) is not None:
+        return True
+    global _starting
+    process, _starting = _starting, None
+    until = time.monotonic() + _START_TIMEOUT_S
+    while process is not None and process.poll() is None and time.monotonic() < until:
+        if _ask("status", _STATUS_TIMEOUT_S) is not None:
+            return True
+        time.sleep(_POLL_S)
+    return process is not None and _ask("status", _STATUS_TIMEOUT_S) is not None
 
 
 def start(debug: bool = False) -> bool:
@@ -52,8 +63,9 @@ def keep() -> bool:
 
 def start_in_background() -> None:
     """Start a daemon that ends with the last node of the domain, without waiting for it."""
+    global _starting
     try:
-        subprocess.Popen(
+        _starting = subprocess.Popen(
             _COMMAND,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -68,6 +80,9 @@ def stop() -> bool:
     """Stop the daemon and wait until it has left; return False if none runs."""
     return _ask("stop", _START_TIMEOUT_S) is not None
 
+
+_starting: subprocess.Popen[bytes] | None = None
+"""Process that was started in the background, until it was seen to answer or to end."""
 
 _COMMAND = [sys.executable, "-m", "ros2cli.daemon.server"]
 

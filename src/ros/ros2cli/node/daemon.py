@@ -33,7 +33,7 @@ class DaemonNode:
         from ros2cli.daemon import client
 
         running = client.is_running()
-        self.methods = self.system.listMethods() if running else []
+        self.methods = sorted(_methods()) if running else []
         return running
 
     def __enter__(self) -> DaemonNode:
@@ -66,8 +66,20 @@ class _System:
         client.stop()
 
     def listMethods(self) -> list[str]:
-        """Return the names of the methods that the daemon answers."""
-        return sorted(_methods())
+        """Return the names of the methods that the daemon answers, those of this class included."""
+        own = (f"system.{name}" for name, _ in inspect.getmembers(self, inspect.ismethod) if not name.startswith("_"))
+        return sorted((*_methods(), *own))
+
+    def methodHelp(self, name: str) -> str:
+        """Return the description of a method, empty for a name that is none."""
+        from ros2cli.daemon.view import GraphView
+
+        owner, method = (self, name[7:]) if name.startswith("system.") else (GraphView, name)
+        return inspect.getdoc(getattr(owner, method)) or "" if name in self.listMethods() else ""
+
+    def methodSignature(self, name: str) -> str:
+        """Return that there are no signatures, as XML-RPC servers in Python answer."""
+        return "signatures not supported"
 
 
 def is_daemon_running(args: Any) -> bool:
