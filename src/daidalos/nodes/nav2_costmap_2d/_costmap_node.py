@@ -36,6 +36,7 @@ from daidalos.nodes.conversions import (
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_interface import CostmapInterface
+from daidalos.nodes.nav2_costmap_2d._transform_age import TransformAges
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.qos import LATCHED
@@ -134,6 +135,7 @@ class CostmapNode(ManagedNode):
             ],
         )  # fmt: skip
         self.lock = threading.RLock()
+        self._ages = TransformAges()
         self.layered: LayeredCostmap | None = None
         self.updated = _NEVER.to_msg()
         self._settings = p = declare(self, CostmapNodeParameters, reconfigure=self._reconfigure)
@@ -300,7 +302,9 @@ class CostmapNode(ManagedNode):
             reason = "" if frame == self.base_frame else f": {error}"
             raise TransformFailed(f"there is no transform from {frame} to {self.global_frame}{reason}") from None
         stamp_ns = nanoseconds(found.header.stamp)
-        return found, (self.get_clock().now().nanoseconds - stamp_ns) * 1e-9 if stamp_ns else 0.0
+        if not stamp_ns:
+            return found, 0.0
+        return found, self._ages.age(frame, stamp_ns * 1e-9, self.get_clock().now().nanoseconds * 1e-9)
 
     def age_of_data(self, *frames: str) -> float:
         """Return how old the oldest input of a layer or transform of some frames is, as a share of what is allowed.
