@@ -1,0 +1,82 @@
+"""Failures of localization in a saved map while the robot drives, in lock-step."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from nav2_msgs.action import NavigateToPose
+
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.map_file import save_map
+from daidalos.testing.programs import Nodes
+from daidalos.testing.scenario import Scenario
+from daidalos.testing.worlds import World
+from description.robots import SHARE
+from end_to_end.test_navigation_failures import BLIND_M, Drive
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.timeout(600),
+    pytest.mark.skipif(os.name == "nt", reason="the scenarios end programs by signals"),
+]
+
+PARAMETERS = SHARE / "nav2_bringup/params/nav2_params.yaml"
+ARENA = SHARE / "turtlebot3_gazebo/worlds/arena.world"
+RESOLUTION = 0.05
+LOW = (-5.0, -4.0)
+"""Lower left corner of the map [m]."""
+
+
+def map_of(world: Path) -> OccupancyGrid:
+    """Return the map of a world of upright boxes and cylinders whose links stand where their models do."""
+    x, y = np.meshgrid(*(low + (np.arange(-2.0 * low / RESOLUTION) + 0.5) * RESOLUTION for low in LOW))
+    data = np.zeros(x.shape, dtype=np.int8)
+    for model in ElementTree.parse(world).iter("model"):
+        for collision in model.iter("collision"):
+            places = [each.findtext("pose", "0 0 0").split()[:2] for each in (model, collision)]
+            dx, dy = (
+                abs(x - sum(float(place[0]) for place in places)),
+                abs(y - sum(float(place[1]) for place in places)),
+            )
+            if collision.find("geometry/box") is not None:
+                width, depth, _ = map(float, collision.findtext("geometry/box/size", "").split())
+                data[(dx <= width / 2) & (dy <= depth / 2)] = 100
+            elif collision.find("geometry/cylinder") is not None:
+                data[np.hypot(dx, dy) <= float(collision.findtext("geometry/cylinder/radius", ""))] = 100
+    return OccupancyGrid(data, RESOLUTION, (*LOW, 0.0))
+
+
+@pytest.fixture
+def drive(world: World, launch: Any, action: Any, clock: Scenario, transform: Any, tmp_path: Path) -> Drive:
+    map_file, _ = save_map(map_of(ARENA), tmp_path / "arena")
+    parameters = tmp_path / "params.yaml"
+    parameters.write_text(
+        PARAMETERS.read_text().replace("    base_frame_id:", "    set_initial_pose: true\n    base_frame_id:", 1)
+    )
+    launch("turtlebot3_gazebo", "turtlebot3_arena.launch.py")
+    given = {"use_sim_time": True, "params_file": str(parameters)}
+    launch("nav2_bringup", "localization_launch.py", map=str(map_file), **given)
+    launch("nav2_bringup", "navigation_launch.py", **given)
+    robot = world.wait_for("waffle")
+    robot.never_touches()
+    transform("map", "base_link").wait(60.0)
+    driven = Drive(robot, action("/navigate_to_pose", NavigateToPose), clock)
+    driven.start()
+    return driven
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+def test_a_goal_is_reached_in_a_saved_map(drive: Drive) -> None:
+    assert drive.end() == ""
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+def test_localization_that_is_killed(drive: Drive, nodes: Nodes) -> None:
+    nodes["amcl"].kill()
+    assert drive.distance_in(4.0) < BLIND_M
+    assert "the transform from map to odom" in drive.end()
