@@ -125,6 +125,10 @@ class Chromium:
         origin = "/".join(url.split("/")[:3])
         self._run(self._command("Storage.clearDataForOrigin", origin=origin, storageTypes="all"))
 
+    def trust_all_certificates(self) -> None:
+        """Open encrypted pages whoever has signed their certificates."""
+        self._run(self._command("Security.setIgnoreCertificateErrors", ignore=True))
+
     def reload(self) -> None:
         """Load the page again, as the user's key does."""
         self._run(self._load("Page.reload"))

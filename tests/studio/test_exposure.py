@@ -69,6 +69,10 @@ def test_the_first_visit_leaves_a_cookie_with_which_the_page_connects(exposed):
             async with http.get(asked, headers=HTML) as response:
                 assert response.status == 200
                 assert response.url.query == {"panel": "plot"}
+            old = address.update_query(token="of another start")
+            async with http.get(old, headers=HTML, allow_redirects=False) as response:
+                assert response.status == 303
+                assert "Set-Cookie" not in response.headers
             own = f"http://127.0.0.1:{exposed.port}"
             async with http.ws_connect(own, protocols=[SUBPROTOCOL], origin=own) as socket:
                 assert "serverInfo" in await socket.receive_str()

@@ -138,10 +138,11 @@ def too_long(request: web.Request) -> Refusal | None:
     return Refusal(_TOO_LONG, f"the address has more than {MAX_TARGET_LENGTH} characters")
 
 
-def entrance(request: web.Request, port: int) -> web.Response | None:
+def entrance(request: web.Request, port: int, token: str) -> web.Response | None:
     """Return the response that moves the token of a browser's first visit from the address into a cookie.
 
-    None where the address of the request has no token, or the client is no browser that shows a page.
+    None where the address of the request has no token, or the client is no browser that shows a page. A browser whose
+    cookie admitted it keeps that, where the address has another token.
     """
     wants_page = "text/html" in request.headers.get("Accept", "")
     if not wants_page or TOKEN_QUERY not in request.query:
@@ -149,9 +150,8 @@ def entrance(request: web.Request, port: int) -> web.Response | None:
     query = {name: value for name, value in request.query.items() if name != TOKEN_QUERY}
     response = web.Response(status=303, headers={"Location": str(request.rel_url.with_query(query))})
     response.headers["Cache-Control"] = "no-store"
-    response.set_cookie(
-        cookie_name(port), request.query[TOKEN_QUERY], httponly=True, samesite="Strict", secure=request.secure
-    )
+    if _equal(request.query[TOKEN_QUERY], token):
+        response.set_cookie(cookie_name(port), token, httponly=True, samesite="Strict", secure=request.secure)
     return response
 
 

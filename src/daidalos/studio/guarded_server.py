@@ -256,7 +256,7 @@ class GuardedServer:
         if refusal is not None:
             self._refused(request, refusal)
             return web.Response(status=refusal.status, text=refusal.reason + "\n", headers=HEADERS)
-        return (entrance(request, self._port) if self._token else None) or await handler(request)
+        return (entrance(request, self._port, self._token) if self._token else None) or await handler(request)
 
     def _other_user(self, request: web.Request) -> Refusal | None:
         """Return the refusal of a connection by another user of this machine, where no token is asked for."""
