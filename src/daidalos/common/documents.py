@@ -54,12 +54,15 @@ def read_text(path: Path | str) -> str:
     Raises
     ------
     DocumentError
-        When it is larger than `MAX_BYTES`, or not UTF-8.
+        When it is larger than `MAX_BYTES`, not UTF-8, or no file can have its name.
     OSError
         When it cannot be opened.
     """
-    with open(path, "rb") as file:
-        data = file.read(MAX_BYTES + 1)
+    try:
+        with open(path, "rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except ValueError:  # a zero or a lone surrogate
+        raise DocumentError("is a name that no file can have", ascii(str(path))) from None
     if len(data) > MAX_BYTES:
         raise DocumentError(f"is larger than {MAX_BYTES >> 20} MiB", str(path))
     try:

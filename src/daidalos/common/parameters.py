@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import operator
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import Field, dataclass, field, fields
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
@@ -128,6 +129,8 @@ class Leaf:
         if type(value) is self.type:
             return value
         is_integer = self.type is float and type(value) is int
+        if is_integer and abs(value) > sys.float_info.max:
+            raise ParameterError(self.name, f"must be {self.type_name}, got an integer that is too large")
         if is_integer and integers:
             return float(value)
         hint = f", an integer; write {float(value)}" if is_integer else ""

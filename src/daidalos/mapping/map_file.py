@@ -185,7 +185,7 @@ def _field(path: Path, fields: dict[str, Any], name: str) -> Any:
 
 def _text(path: Path, fields: dict[str, Any], name: str) -> str:
     value = _field(path, fields, name)
-    if not isinstance(value, str):
+    if not isinstance(value, str) or not value.isprintable():
         raise MapFileError(path, name, f"expected the name of a file, found {value!r}")
     return value
 
@@ -230,6 +230,8 @@ def _write_together(contents: dict[Path, bytes]) -> None:
             part.replace(path)
     except OSError as error:
         raise MapFileError(next(iter(contents)), None, error.strerror or str(error)) from error
+    except ValueError:  # a zero or a lone surrogate
+        raise MapFileError(Path(ascii(str(next(iter(contents))))), None, "is a name that no file can have") from None
     finally:
         for part in parts.values():
             part.unlink(missing_ok=True)

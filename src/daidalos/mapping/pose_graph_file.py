@@ -55,8 +55,19 @@ class SavedGraph:
 
 
 def stem_of(name: str | Path) -> Path:
-    """Return the path of a pose graph without the suffixes of its files."""
-    path = Path(name).expanduser()
+    """Return the path of a pose graph without the suffixes of its files.
+
+    Raises
+    ------
+    MapFileError
+        When no file can have that name.
+    """
+    if "\0" in str(name):
+        raise MapFileError(Path(ascii(str(name))), None, "is a name that no file can have")
+    try:
+        path = Path(name).expanduser()
+    except RuntimeError:
+        raise MapFileError(Path(name), None, "names the home folder of an unknown user") from None
     return path.with_suffix("") if path.suffix in (GRAPH_SUFFIX, DATA_SUFFIX) else path
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -195,7 +196,10 @@ class _Reader:
     def document(self, content: Any) -> Document:
         if not isinstance(content, Lines):
             raise self._error("expected a mapping with the keys of a scenario, such as 'world' and 'steps'", 1)
-        self._parameters = dict(content.get("parameters") or {})
+        parameters = content.get("parameters") or {}
+        if not isinstance(parameters, Mapping):
+            raise self._error("expected a mapping of names to values below 'parameters'", content.lines["parameters"])
+        self._parameters = dict(parameters)
         for name, value in self._varied.items():
             if name not in self._parameters:
                 raise self._error(f"the scenario has no parameter '{name}'{hint(name, self._parameters)}", 1)
@@ -260,7 +264,7 @@ class _Reader:
         return values
 
     def _of_kind(self, value: Any, kind: type, key: str, line: int) -> Any:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        is_number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
         fits = {float: is_number, int: is_number and int(value) == value if is_number else False}.get(
             kind, isinstance(value, kind)
         )

@@ -83,7 +83,7 @@ def loadCalibrationFile(filename: str | Path, cname: str) -> CameraInfo | None:
             setattr(info, attribute, data)
     except KeyError as error:
         raise ValueError(f"{path}: {error} is missing") from None
-    except (TypeError, ValueError) as error:
+    except (AssertionError, OverflowError, TypeError, ValueError) as error:
         raise ValueError(f"{path}: {error}") from None
     return info
 

@@ -112,6 +112,8 @@ def _output(path: Path, number: int, values: dict[str, Any]) -> Output:
         kind = known[name]
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
             raise BagError(path, f"output_bags[{number}].{name}: expected {_KINDS[kind]}, found {value!r}")
+        if isinstance(value, list) and not all(isinstance(one, str) for one in value):
+            raise BagError(path, f"output_bags[{number}].{name}: expected a list of names, found {value!r}")
     if not values.get("uri"):
         raise BagError(path, f"output_bags[{number}]: uri is missing")
     storage = StorageOptions(**{name: values[name] for name in _STORAGE if name in values})

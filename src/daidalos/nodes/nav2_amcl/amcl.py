@@ -155,7 +155,7 @@ def _read_pose(path: Path) -> Array:
         raise UserError(f"{path}: {error.strerror}") from error
     except DocumentError as error:
         raise UserError(f"{path}: {error}") from error
-    except (TypeError, KeyError, ValueError) as error:
+    except (TypeError, KeyError, OverflowError, ValueError) as error:
         raise UserError(f"{path}: expected numbers x, y and yaw") from error
     if not np.isfinite(pose).all():
         raise UserError(f"{path}: expected finite numbers x, y and yaw")

@@ -138,6 +138,8 @@ def _entry(entry: dict[str, Any], where: str) -> Bridge:
     ):
         if not value:
             raise MappingError(f"{where}: <{key}> is missing")
+        if not str(value).isprintable():
+            raise MappingError(f"{where}: <{key}> is {value!r}, expected a name")
     if direction not in _DIRECTIONS.values():
         raise MappingError(f"{where}: direction is {direction!r}, expected one of {', '.join(_DIRECTIONS.values())}")
     kinds = str(entry["ros_type_name"]), str(entry["gz_type_name"])

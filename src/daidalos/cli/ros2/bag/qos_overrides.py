@@ -29,7 +29,7 @@ def read_overrides(path: str | None) -> dict[str, QoSProfile]:
     for topic, policies in document.items():
         try:
             profiles[str(topic)] = interpret_dict_as_qos_profile(policies)
-        except (AttributeError, KeyError, TypeError, ValueError) as fault:
+        except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as fault:
             text = fault.args[0] if fault.args else fault
             raise error(f"{path}: {topic}: {text}") from None
     return profiles
