@@ -40,8 +40,8 @@ def get_entry_points(
         else:
             there[point.name] = point
     for name in sorted(wanted - there.keys()):
-        choice = ", ".join(sorted(there)) or "nothing"
-        _report(f"there is no '{name}' in {group_name}{hint(name, there)}; installed: {choice}", strict)
+        choice = hint(name, there) if there else "; no package has added one"
+        _report(f"there is no '{name}' in {group_name}{choice}", strict)
     return {name: point for name, point in there.items() if not wanted or name in wanted}
 
 

@@ -284,3 +284,18 @@ def test_definitions_of_types_without_and_unknown():
     short, full = (source.get_full_text(name) for name in ("std_msgs/String", "std_msgs/msg/String"))
     assert (short.encoding, short.topic_type) == ("ros2msg", "std_msgs/String")
     assert short.encoded_message_definition == full.encoded_message_definition
+
+
+def test_topics_of_service_events_have_the_definition_of_the_service(tmp_path, storage):
+    uri = str(tmp_path / "bag")
+    writer = SequentialWriter()
+    writer.open(StorageOptions(uri, storage), ConverterOptions("cdr", "cdr"))
+    type_name = "rcl_interfaces/srv/GetParameters_Event"
+    writer.create_topic(TopicMetadata(name="/get/_service_event", type=type_name, serialization_format="cdr"))
+    writer.write("/get/_service_event", b"", 1)
+    writer.close()
+    (definition,) = opened(uri, storage).get_all_message_definitions()
+    assert (definition.topic_type, definition.encoding) == (type_name, "ros2msg")
+    text = definition.encoded_message_definition
+    assert text.startswith(f"{80 * '='}\nSRV: rcl_interfaces/srv/GetParameters\n")
+    assert f"\n\n{80 * '='}\nMSG: rcl_interfaces/ParameterValue\n" in text
