@@ -9,8 +9,6 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from rosidl_adapter.idl import idl_text
-
 from daidalos.interfaces.definition import Action, Message, Service
 from daidalos.interfaces.library import InterfaceNotFound, Library, definition_text
 
@@ -111,6 +109,8 @@ def _idl(name: str, library: Library, seen: set[str]) -> str:
 
 
 def _idl_text(name: str, library: Library) -> str:
+    from rosidl_adapter.idl import idl_text  # absent while the package is built
+
     path = library.path(name)
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".idl":
