@@ -12,6 +12,7 @@ from PIL import Image
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import load_map, save_map
+from daidalos.mapping.pose_graph_file import load_pose_graph
 
 GOOD = """\
 image: room.pgm
@@ -200,3 +201,11 @@ def test_what_can_not_be_written_leaves_the_old_files(tmp_path: Path) -> None:
     with pytest.raises(MapFileError, match=r"folder\.yaml: is a folder"):
         save_map(grid, tmp_path / "folder")
     assert not (tmp_path / "folder.pgm").exists()
+
+
+@pytest.mark.parametrize("name", ["a\0b", "x" * 300, "x/" * 3_000 + "x", "\ud800"])
+def test_a_name_that_no_file_can_have_is_refused(tmp_path: Path, name: str) -> None:
+    grid = OccupancyGrid(np.zeros((2, 2), np.int8), 0.05, (0.0, 0.0, 0.0))
+    for use in (load_map, lambda path: save_map(grid, path), load_pose_graph):
+        with pytest.raises(MapFileError):
+            use(tmp_path / name)

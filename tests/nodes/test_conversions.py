@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import LaserScan
 
+from daidalos.common.errors import UserError
 from daidalos.nodes import conversions
 
 FINITE = st.floats(-1e4, 1e4)
@@ -65,3 +66,18 @@ def test_a_scan_keeps_its_geometry() -> None:
     assert (scan.angle_min, scan.angle_increment, scan.time_increment) == (-1.0, 0.5, 0.25)
     assert scan.sensor_pose == (0.1, 0.2, 0.3)
     np.testing.assert_array_equal(scan.ranges, np.array([1.0, math.inf], np.float32))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("width", 3), ("height", 4294967295), ("resolution", 0.0), ("resolution", -1.0), ("resolution", math.nan),
+     ("resolution", math.inf)],
+)  # fmt: skip
+def test_a_grid_that_is_not_what_it_says_is_refused(name: str, value: float) -> None:
+    message = conversions.grid_message(np.zeros((2, 2), np.int8), 0.5, (0.0, 0.0, 0.0), "map", Time())
+    setattr(message.info, name, value)
+    with pytest.raises(UserError, match="is not used"):
+        conversions.grid_array(message)
+    message = conversions.grid_message(np.zeros((2, 2), np.int8), 0.5, (math.nan, 0.0, 0.0), "map", Time())
+    with pytest.raises(UserError, match="finite origin"):
+        conversions.grid_array(message)

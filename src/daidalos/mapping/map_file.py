@@ -234,4 +234,5 @@ def _write_together(contents: dict[Path, bytes]) -> None:
         raise MapFileError(Path(ascii(str(next(iter(contents))))), None, "is a name that no file can have") from None
     finally:
         for part in parts.values():
-            part.unlink(missing_ok=True)
+            with contextlib.suppress(OSError, ValueError):  # where no file can have the name
+                part.unlink(missing_ok=True)

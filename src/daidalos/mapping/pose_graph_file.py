@@ -62,7 +62,7 @@ def stem_of(name: str | Path) -> Path:
     MapFileError
         When no file can have that name.
     """
-    if "\0" in str(name):
+    if "\0" in str(name) or any(0xD800 <= ord(one) < 0xE000 for one in str(name)):
         raise MapFileError(Path(ascii(str(name))), None, "is a name that no file can have")
     try:
         path = Path(name).expanduser()

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.arrays import Array
+from daidalos.common.errors import UserError
 from daidalos.common.pose3 import quaternion_from_yaw, rotation_matrix, yaw_from_quaternion
 
 if TYPE_CHECKING:
     from daidalos.mapping.scan import LaserScanData
     from daidalos.navigation.costmap.observation import CloudData
+
+SMALLEST_CELL = 1e-4
+"""Least resolution of a map [m] that is used."""
 
 
 def twist_message(velocity: Any, frame: str | None, stamp: Any) -> Any:
@@ -131,7 +136,18 @@ def grid_message(values: NDArray[np.int8], resolution: float, origin: Any, frame
 
 
 def grid_array(grid: Any) -> NDArray[np.int8]:
-    """Return the occupancies (rows, columns) of a ``nav_msgs/msg/OccupancyGrid``."""
+    """Return the occupancies (rows, columns) of a ``nav_msgs/msg/OccupancyGrid``.
+
+    Raises
+    ------
+    UserError
+        When the message does not have as many cells as it says, or no place and size of them.
+    """
+    info = grid.info
+    if len(grid.data) != info.width * info.height:
+        raise UserError(f"a map with {len(grid.data)} cells instead of {info.width} x {info.height} is not used")
+    if not (SMALLEST_CELL <= info.resolution < math.inf and np.isfinite(pose2_of(info.origin)).all()):
+        raise UserError(f"a map with a resolution of {info.resolution:g} m, or without a finite origin, is not used")
     return np.frombuffer(grid.data, dtype=np.int8).reshape(grid.info.height, grid.info.width)
 
 

@@ -67,3 +67,11 @@ def test_the_robot_obeys_is_moved_and_sees_the_map(stage: Callable[[dict[str, An
     it.publish("/cmd_vel", twist_message((float("nan"), 0.0, 0.0), None, it.stamp))
     it.step_for(0.2)
     assert pose2_of(odometry[-1].pose.pose) == pytest.approx(before)
+    # Maps that say what they are not do not replace the one before, and end nothing.
+    for odd in ({"resolution": float("nan")}, {"resolution": 0.0}, {"resolution": -1.0}, {"width": 4294967295}):
+        message = grid_message(cells, 0.05, (-1.0, -2.5), "map", it.stamp)
+        for name, value in odd.items():
+            setattr(message.info, name, value)
+        it.publish("/map", message, LATCHED)
+        it.step_for(0.3)
+    assert np.isfinite(scans[-1].ranges).any()

@@ -16,6 +16,7 @@ from rclpy.time import Time
 from tf2_ros import TransformBroadcaster, TransformException, TransformListener
 
 from daidalos.common.arrays import Array
+from daidalos.common.errors import UserError
 from daidalos.common.pose2 import between, compose
 from daidalos.localization.amcl import DEFAULT_COVARIANCE, Amcl, Estimate
 from daidalos.localization.errors import LocalizationError
@@ -167,8 +168,10 @@ class Localizer:
         p, info = self._settings, message.info
         if self._grid is not None and p.first_map_only and not replace:
             return False
-        if len(message.data) != info.width * info.height:
-            self._log.error(f"a map with {len(message.data)} cells instead of {info.width} x {info.height} is not used")
+        try:
+            cells = grid_array(message).copy()
+        except UserError as error:
+            self._log.error(str(error))
             return False
         if message.header.frame_id.lstrip("/") != p.global_frame_id.lstrip("/"):
             self._log.warning(
@@ -176,7 +179,7 @@ class Localizer:
             )
         x, y, yaw = pose2_of(info.origin).tolist()
         # The message's resolution has 32 bits; the map's is what these say, such as 0.05.
-        grid = OccupancyGrid(grid_array(message).copy(), float(str(np.float32(info.resolution))), (x, y, yaw))
+        grid = OccupancyGrid(cells, float(str(np.float32(info.resolution))), (x, y, yaw))
         try:
             self._use_map(grid)
         except LocalizationError as error:

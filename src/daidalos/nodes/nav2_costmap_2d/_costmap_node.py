@@ -15,6 +15,7 @@ from rclpy.qos import qos_profile_sensor_data
 from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
 
+from daidalos.common.errors import UserError
 from daidalos.common.parameters import parameter
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
@@ -213,7 +214,11 @@ class CostmapNode(ManagedNode):
         def take(message: Any) -> None:
             info = message.info
             x, y, yaw = (float(value) for value in pose2_of(info.origin))
-            grid = OccupancyGrid(grid_array(message), info.resolution, (x, y, yaw))
+            try:
+                grid = OccupancyGrid(grid_array(message), info.resolution, (x, y, yaw))
+            except UserError as error:
+                self.get_logger().error(str(error))
+                return
             with self.lock:
                 listened.take(grid)
 

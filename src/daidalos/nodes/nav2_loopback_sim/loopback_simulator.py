@@ -12,6 +12,7 @@ from rclpy.qos import qos_profile_sensor_data
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformBroadcaster, TransformException, TransformListener
 
+from daidalos.common.errors import UserError
 from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.common.pose2 import between, compose, inverse, move_along_arc
 from daidalos.mapping.ray_casting import cast_rays
@@ -90,6 +91,11 @@ class LoopbackSimulator(Node):
         self.create_timer(p.scan_publish_dur, self._scan)
 
     def _on_map(self, message: Any) -> None:
+        try:
+            grid_array(message)
+        except UserError as error:
+            self.get_logger().error(str(error))
+            return
         self._map = message
 
     def _on_initial_pose(self, message: Any) -> None:

@@ -12,6 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 
+from daidalos.common.errors import UserError
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.grid import OccupancyGrid
@@ -101,7 +102,7 @@ async def save(node: Node, parameters: MapSaverParameters, save_request: SaveReq
     log.info(f"Received a {info.width} X {info.height} map @ {info.resolution:.3g} m/pix")
     try:
         files = _write(parameters, message, save_request)
-    except MapFileError as error:
+    except UserError as error:
         log.error(f"Failed to save the map: {error}")
         return False
     log.info(f"Map saved: {files[0]} and {files[1]}")
