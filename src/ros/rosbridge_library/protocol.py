@@ -180,4 +180,4 @@ class Protocol:
     def _write(self, level: str, text: str) -> None:
         logger = self.node_handle.get_logger()
         write = {"error": logger.error, "warning": logger.warning, "info": logger.info}.get(level, logger.debug)
-        write(text)
+        write(text.encode("utf-8", "backslashreplace").decode())  # a lone surrogate cannot be sent to /rosout
