@@ -45,6 +45,8 @@ class DemoRobot:
         self.goals: list[tuple[float, float, float]] = []
         self.now = 12.0
         self.speed, self.turn = 0.0, 0.0
+        self.track: list[tuple[float, float, float]] = []
+        """Where it was in each step: time [s], x and y [m]."""
         self._maps = maps
         self._seen = np.zeros((CELLS, CELLS), dtype=bool)
         self._truth = _truth()
@@ -115,6 +117,7 @@ class DemoRobot:
         self._steps += 1
         self.source.stamp = round(self.now * 1e9)
         self._drive()
+        self.track.append((self.now, self.x, self.y))
         self.source.set_time(self.source.stamp)
         self._send("/clock", "rosgraph_msgs/msg/Clock", clock=self._stamp())
         self._send_transforms()
