@@ -210,7 +210,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
                 if item.__class__ is ReadyHook:
                     entity = self._begin(item)
                     if entity is not None:
-                        self._carry_out(self._run_entity, item, entity)
+                        self._carry_out_entity(item, entity)
                         return
                 elif isinstance(item, _Failure):
                     raise item.error
@@ -223,6 +223,10 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
     def _carry_out(self, function: Callable[..., None], *arguments: Any) -> None:
         """Run a callback, here or in a thread of its own."""
         raise NotImplementedError
+
+    def _carry_out_entity(self, hook: ReadyHook, entity: Any) -> None:
+        """Run the callback of an entity as `_carry_out` does."""
+        self._carry_out(self._run_entity, hook, entity)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Run one callback; wait for it at most `timeout_sec` seconds (None: however long it takes).
@@ -324,6 +328,9 @@ class SingleThreadedExecutor(Executor):
 
     def _carry_out(self, function: Callable[..., None], *arguments: Any) -> None:
         function(*arguments)
+
+    def _carry_out_entity(self, hook: ReadyHook, entity: Any) -> None:
+        self._run_entity(hook, entity)  # without packing arguments, as it is done for each message
 
 
 class MultiThreadedExecutor(Executor):

@@ -86,3 +86,33 @@ def test_timers_that_were_cancelled_are_not_hoarded() -> None:
         timer.attach(queue.schedule)
         timer.destroy_when_not_in_use()
     assert len(queue._timers) < 200
+
+
+def test_timers_of_other_threads_wake_who_waits_while_cancelled_ones_are_removed() -> None:
+    """The waiting thread reads the first timer without the lock: none may be overlooked while others are added."""
+    queue, kept = ReadyQueue(), []
+    clock = Clock(clock_type=ClockType.STEADY_TIME)
+    count, writers = 300, 4
+
+    def schedule(writer: int) -> None:
+        for number in range(count):
+            name = (writer, number)
+            timer = TimerHandle(clock.handle, number % 7 * MS, lambda name=name: queue.put(name))
+            kept.append(timer)
+            timer.attach(queue.schedule)
+            for _ in range(3):
+                cancelled = TimerHandle(clock.handle, 1000 * 1000 * MS, lambda: None)
+                cancelled.attach(queue.schedule)
+                cancelled.cancel_timer()
+
+    threads = [threading.Thread(target=schedule, args=(writer,)) for writer in range(writers)]
+    for thread in threads:
+        thread.start()
+    received, deadline = [], time.monotonic_ns() + 60_000 * MS
+    while len(received) < count * writers:
+        item = queue.get(deadline)
+        if item is not None:
+            received.append(item)
+    for thread in threads:
+        thread.join()
+    assert sorted(received) == [(writer, number) for writer in range(writers) for number in range(count)]

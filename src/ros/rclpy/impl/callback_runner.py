@@ -96,7 +96,7 @@ class CallbackRunner:
                 result = callback(*arguments)
                 if result is not None and inspect.iscoroutine(result):
                     suspended = self._run_coroutine(result, entity)
-                if not in_a_row or suspended or not self._may_run_again(hook):
+                if not in_a_row or suspended or not entity._rcl_has_more() or not self._may_run_again(hook):
                     return
         finally:
             thread.running = outer

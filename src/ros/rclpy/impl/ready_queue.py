@@ -7,7 +7,6 @@ import itertools
 import threading
 import time
 from collections import deque
-from contextlib import suppress
 from typing import Any
 
 from rclpy.impl.timer import TimerHandle
@@ -52,16 +51,19 @@ class ReadyQueue:
         self._open()
 
     def _open(self) -> None:
-        with suppress(RuntimeError):  # it is open
+        try:  # noqa: SIM105 - several times faster than `suppress`, for each message
             self._gate.release()
+        except RuntimeError:
+            pass  # it is open
 
     def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
         """Notify a timer when ``time.monotonic_ns()`` reaches a deadline."""
         with self._timers_lock:
             timers = self._timers
             if len(timers) >= self._tidy_at:
-                timers[:] = [entry for entry in timers if entry[3].version == entry[2]]
-                heapq.heapify(timers)
+                live = [entry for entry in timers if entry[3].version == entry[2]]
+                heapq.heapify(live)
+                timers[:] = live  # at once, since `_notify_timers` reads the first without the lock
                 self._tidy_at = max(2 * len(timers), _TIDY)
             heapq.heappush(timers, (deadline_ns, self._count(), timer.version, timer))
             earliest = timers[0][3] is timer
@@ -105,12 +107,16 @@ class ReadyQueue:
         """Notify the timers that are due, and return the earliest of `until` and the next timer's deadline."""
         timers = self._timers
         while True:
+            try:
+                first = timers[0]  # without the lock: each change leaves a heap, and an earlier timer wakes this thread
+            except IndexError:
+                return until
+            deadline, _, version, timer = first
+            if timer.version == version and deadline > time.monotonic_ns():
+                return deadline if until is None or deadline < until else until
             with self._timers_lock:
-                if not timers:
-                    return until
-                deadline, _, version, timer = timers[0]
-                if timer.version == version and deadline > time.monotonic_ns():
-                    return deadline if until is None or deadline < until else until
+                if not timers or timers[0] is not first:
+                    continue
                 heapq.heappop(timers)
             if timer.version == version:
                 timer.on_due()
