@@ -198,6 +198,19 @@ def test_destroying_ends_everything_once(graph: Context) -> None:
             use()
 
 
+@pytest.mark.parametrize("kind", MAKERS)
+def test_an_interrupted_creation_leaves_nothing_to_destroy(
+    graph: Context, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node, watcher = Node("tested"), Node("watcher")
+    monkeypatch.setattr(node.handle.session, f"create_{kind}", Mock(side_effect=KeyboardInterrupt))
+    try:
+        MAKERS[kind][0](node, "name")
+    except KeyboardInterrupt:  # whose traceback keeps the handle alive
+        node.destroy_node()
+    assert watcher.get_node_names() == ["watcher"]
+
+
 def test_what_is_in_use_is_destroyed_when_it_is_not(node: Node) -> None:
     publisher = node.create_publisher(String, "topic", 1)
     with publisher.handle:

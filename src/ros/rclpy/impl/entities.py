@@ -89,8 +89,8 @@ class NodeHandle(Destroyable):
         kind = "service" if is_service else "topic"
         return names.remap_name(self.remaps, kind, full, self.name, self.namespace)
 
-    def own(self, handle: EndpointHandle) -> None:
-        """Register a handle that is destroyed with the node.
+    def check_context(self) -> None:
+        """Check that endpoints can still be made.
 
         Raises
         ------
@@ -99,6 +99,16 @@ class NodeHandle(Destroyable):
         """
         if self.context.is_released:
             raise RCLError(f"node '{self.info.full_name}' cannot make anything: its context was shut down")
+
+    def own(self, handle: EndpointHandle) -> None:
+        """Register a handle, whose endpoint exists, that is destroyed with the node.
+
+        Raises
+        ------
+        RCLError
+            When the context was shut down meanwhile.
+        """
+        self.check_context()
         self._members[handle] = None
 
     def retire(self) -> None:
@@ -158,18 +168,28 @@ class EndpointHandle(Destroyable):
     ----------
     node
         The node that the endpoint belongs to.
+    create
+        Creates the transport's object. The node knows the handle only afterwards: a creation that fails or is
+        interrupted leaves nothing behind that the node would destroy.
 
     Attributes
     ----------
     impl
         The transport's object.
+
+    Raises
+    ------
+    RCLError
+        When the context of the node was shut down.
     """
 
     impl: Publisher | Subscription | Service | Client
 
-    def __init__(self, node: NodeHandle) -> None:
+    def __init__(self, node: NodeHandle, create: Callable[[], Any]) -> None:
         super().__init__()
         self.node = node
+        node.check_context()
+        self.impl = create()
         node.own(self)
 
     @property
@@ -263,12 +283,11 @@ class PublisherHandle(EndpointHandle):
     """A publisher."""
 
     impl: Publisher
+    _liveliness: Publisher | None = None
 
     def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: QoSProfile) -> None:
-        super().__init__(node)
         resolved = best_available_offer(qos, node.graph, topic).resolved()
-        self.impl = node.session.create_publisher(node.info, topic, message_type, resolved)
-        self._liveliness: Publisher | None = None
+        super().__init__(node, lambda: node.session.create_publisher(node.info, topic, message_type, resolved))
 
     def get_topic_name(self) -> str:
         """Return the full topic name."""
@@ -312,9 +331,8 @@ class SubscriptionHandle(QueueHandle):
     impl: Subscription
 
     def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: QoSProfile) -> None:
-        super().__init__(node)
         resolved = best_available_request(qos, node.graph, topic).resolved()
-        self.impl = node.session.create_subscription(node.info, topic, message_type, resolved)
+        super().__init__(node, lambda: node.session.create_subscription(node.info, topic, message_type, resolved))
 
     def get_topic_name(self) -> str:
         """Return the full topic name."""
@@ -354,8 +372,7 @@ class ServiceHandle(ServiceEndHandle):
     impl: Service
 
     def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: QoSProfile) -> None:
-        super().__init__(node)
-        self.impl = node.session.create_service(node.info, name, service_type, qos.resolved())
+        super().__init__(node, lambda: node.session.create_service(node.info, name, service_type, qos.resolved()))
 
     def take_request(self) -> tuple[Any, ServiceInfo] | None:
         """Return the oldest request with its header, or None."""
@@ -393,8 +410,7 @@ class ClientHandle(ServiceEndHandle):
     impl: Client
 
     def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: QoSProfile) -> None:
-        super().__init__(node)
-        self.impl = node.session.create_client(node.info, name, service_type, qos.resolved())
+        super().__init__(node, lambda: node.session.create_client(node.info, name, service_type, qos.resolved()))
 
     def send_request(self, request: Any) -> int:
         """Send a request, and return its sequence number."""
