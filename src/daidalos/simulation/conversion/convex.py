@@ -29,8 +29,22 @@ MAX_HULLS = 24
 _log = logging.getLogger(__name__)
 
 
+def split_pieces(pieces: list[TriangleMesh], is_cancelled: Callable[[], bool]) -> list[list[TriangleMesh]]:
+    """Return the convex parts that each piece is split into by `decomposition`.
+
+    Raises
+    ------
+    decomposition.Cancelled
+    """
+    return [[hull_of_points(points) for points in decomposition.decompose(piece, is_cancelled)] for piece in pieces]
+
+
 def convex_parts(
-    mesh: TriangleMesh, key: str, decompose: bool, is_cancelled: Callable[[], bool] = lambda: False
+    mesh: TriangleMesh,
+    key: str,
+    decompose: bool,
+    is_cancelled: Callable[[], bool] = lambda: False,
+    split: Callable[[list[TriangleMesh], Callable[[], bool]], list[list[TriangleMesh]]] = split_pieces,
 ) -> tuple[list[TriangleMesh], bool]:
     """Split a mesh into convex parts.
 
@@ -44,6 +58,8 @@ def convex_parts(
         each piece gets its convex hull.
     is_cancelled : callable
         Asked often; see `decomposition.Cancelled`.
+    split : callable
+        Splits what is not convex, maybe in another process.
 
     Returns
     -------
@@ -69,13 +85,11 @@ def convex_parts(
     parts = _load(file)
     if parts is None:
         _log.info("splitting a mesh of %d triangles into convex parts; the result is kept", len(mesh.faces))
+        concave = [piece for piece, is_convex in zip(pieces, convex, strict=True) if not is_convex]
+        splits = iter(split(concave, is_cancelled))
         parts = []
-        for piece, hull, is_convex in zip(pieces, hulls, convex, strict=True):
-            parts += (
-                [hull]
-                if is_convex
-                else [hull_of_points(points) for points in decomposition.decompose(piece, is_cancelled)]
-            )
+        for hull, is_convex in zip(hulls, convex, strict=True):
+            parts += [hull] if is_convex else next(splits)
         _save(file, parts)
     return parts, True
 

@@ -21,7 +21,7 @@ import numpy as np
 from daidalos.description.meshes import TriangleMesh
 from daidalos.simulation.conversion.facets import convex_facets
 
-VERSION = 4
+VERSION = 5
 """Changes with the results, so that kept ones are not taken for those of another method."""
 MAX_PARTS = 32
 _TOLERANCE = (0.01, 0.03, 0.06)
@@ -216,7 +216,13 @@ def _concavity(points: Points, tolerance: float) -> float:
         hull = ConvexHull(points, qhull_options="QJ")
     except QhullError:
         return 0.0
-    used, index = np.unique(hull.simplices, return_inverse=True)
+    corners = points[hull.simplices]
+    edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
+    # What lies on a small triangle is nearer to one of its corners than the tolerance.
+    large = hull.simplices[edges > 3**0.5 * tolerance]
+    if not len(large):
+        return 0.0
+    used, index = np.unique(large, return_inverse=True)
     hull_mesh = TriangleMesh(points[used], index.reshape(-1, 3).astype(np.int32))
     # A tree that is searched once: balancing it takes longer than the searches gain.
     tree = cKDTree(points, balanced_tree=False, compact_nodes=False)
@@ -242,11 +248,11 @@ def _find_cut(points: Points, planes: Points, overlap: float) -> Points | None:
         for number, axis in enumerate(np.eye(3))
         for share in _CUTS
     ]
+    candidates = np.concatenate((planes, across))
+    heights = coarse @ candidates[:, :3].T - candidates[:, 3]
+    divides = (heights.min(axis=0) < -2 * overlap) & (heights.max(axis=0) > 2 * overlap)
     best: tuple[float, Points] | None = None
-    for plane in (*planes, *across):
-        height = coarse @ plane[:3] - plane[3]
-        if height.min() >= -2 * overlap or height.max() <= 2 * overlap:
-            continue
+    for plane, height in zip(candidates[divides], heights.T[divides], strict=True):
         volume = _volume(coarse[height <= overlap]) + _volume(coarse[height >= -overlap])
         if best is None or volume < best[0]:
             best = (volume, plane)

@@ -1,4 +1,4 @@
-"""Preparation of the collision meshes of models: read and split into convex parts in parallel threads."""
+"""Preparation of the collision meshes of models: read, and split into convex parts in parallel processes."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, wait
+from typing import Any
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Cone, Geometry, Mesh, Polyline
 from daidalos.description.meshes import TriangleMesh, triangles_of
 from daidalos.description.world import Model
-from daidalos.simulation.conversion.convex import content_key, convex_parts
+from daidalos.simulation.conversion.convex import content_key, convex_parts, split_pieces
+from daidalos.simulation.conversion.splitting import SplittingProcess
 from daidalos.simulation.errors import SimulationError
 
 MAX_THREADS = 8
@@ -48,8 +50,8 @@ def prepare_meshes(
 ) -> PreparedMeshes:
     """Return the convex parts of all collision meshes of models.
 
-    The work is done in threads, since most of it is sorting, hulls and searches in compiled code; the calling thread
-    only waits, and can be interrupted.
+    The work is done in one thread for each core, all but one of which split meshes in a process of their own; the
+    calling thread only waits, and can be interrupted.
 
     Parameters
     ----------
@@ -76,10 +78,11 @@ def prepare_meshes(
     cancelled = threading.Event()
     jobs = deque((Future[_Prepared](), shape, decompose) for shape, decompose in shapes)
     futures = [future for future, _, _ in jobs]
+    splitters = [SplittingProcess() for _ in range(min(_cores(), MAX_THREADS, len(shapes)) - 1)]
     # Daemon threads, since the reading of a mesh cannot be interrupted: a process that ends leaves them behind.
     threads = [
-        threading.Thread(target=_work, args=(jobs, cancelled), name=f"meshes_{number}", daemon=True)
-        for number in range(min(_cores(), MAX_THREADS, len(shapes)))
+        threading.Thread(target=_work, args=(jobs, split, cancelled), name=f"meshes_{number}", daemon=True)
+        for number, split in enumerate((split_pieces, *(splitter.split for splitter in splitters)))
     ]
     try:
         for thread in threads:
@@ -90,9 +93,13 @@ def prepare_meshes(
         return dict(result for future in futures if (result := future.result()) is not None)
     finally:
         cancelled.set()
+        for splitter in splitters:
+            splitter.close()
 
 
-def _work(jobs: deque[tuple[Future[_Prepared], Geometry, bool]], cancelled: threading.Event) -> None:
+def _work(
+    jobs: deque[tuple[Future[_Prepared], Geometry, bool]], split: Callable[..., Any], cancelled: threading.Event
+) -> None:
     """Prepare meshes until none is left or the preparation is cancelled."""
     while not cancelled.is_set():
         try:
@@ -100,7 +107,7 @@ def _work(jobs: deque[tuple[Future[_Prepared], Geometry, bool]], cancelled: thre
         except IndexError:
             return
         try:
-            future.set_result(_prepare(shape, decompose, cancelled))
+            future.set_result(_prepare(shape, decompose, split, cancelled))
         except BaseException as problem:  # raised again where the result is taken
             future.set_exception(problem)
 
@@ -126,7 +133,7 @@ def _file_size(shape: Geometry) -> int:
         return 0
 
 
-def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> _Prepared:
+def _prepare(shape: Geometry, decompose: bool, split: Callable[..., Any], cancelled: threading.Event) -> _Prepared:
     if cancelled.is_set():
         return None
     try:
@@ -134,7 +141,7 @@ def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> _P
     except DescriptionError:
         return None  # reported where the collision is added
     key = content_key(mesh)
-    return (key, decompose), convex_parts(mesh, key, decompose, cancelled.is_set)
+    return (key, decompose), convex_parts(mesh, key, decompose, cancelled.is_set, split)
 
 
 def _wait(
