@@ -80,3 +80,11 @@ def test_localization_that_is_killed(drive: Drive, nodes: Nodes) -> None:
     nodes["amcl"].kill()
     assert drive.distance_in(4.0) < BLIND_M
     assert "the transform from map to odom" in drive.end()
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+@pytest.mark.parametrize("pose", [(-1.5, -1.5, 2.0), (-2.0, 0.0, 3.1)])
+def test_a_robot_that_is_carried_away_does_not_report_success(drive: Drive, pose: tuple[float, float, float]) -> None:
+    drive.robot.move(pose[0], pose[1], yaw=pose[2])
+    assert drive.distance_in(4.0) < 0.5
+    assert "was aborted" in drive.end()

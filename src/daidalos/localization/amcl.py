@@ -7,6 +7,7 @@ import numpy as np
 
 from daidalos.common.arrays import Array
 from daidalos.common.pose2 import between, compose, inverse, wrap
+from daidalos.localization.agreement import LostDetector, agreement_of
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.errors import LocalizationError
 from daidalos.localization.likelihood_map import LikelihoodMap
@@ -64,6 +65,8 @@ class Estimate:
         Pose of odometry's frame in the map.
     updated : bool
         Whether the scan was used, rather than odometry alone.
+    lost : bool
+        Whether scans agreed with the map at the pose, and the last ones do not; see `LostDetector`.
     """
 
     pose: Array
@@ -72,6 +75,7 @@ class Estimate:
     weights: Array
     map_to_odom: Array
     updated: bool
+    lost: bool = False
 
 
 class Amcl:
@@ -102,6 +106,7 @@ class Amcl:
         self._generator = np.random.default_rng(seed)
         self.config = config
         self._grid = grid
+        self._lost = LostDetector()
         self._use(config)
         self._particles: Array = np.zeros((1, 3))
         self._weights: Array = np.ones(1)
@@ -124,6 +129,7 @@ class Amcl:
         """
         self._world = _likelihood_map(self.config, grid)
         self._grid = grid
+        self._lost.reset()
 
     def contains(self, position: Array) -> bool:
         """Return whether a position (x, y) lies on the map."""
@@ -186,9 +192,15 @@ class Amcl:
             self._map_to_odom = compose(self._mean, inverse(odom_pose))
         beams = Beams.of_scan(scan, self.config)
         moved = self._moved(odom_pose)
-        due = moved or self._forced or self._settling > 0
-        if not due or not beams.ranges.size:
-            return self._estimate(odom_pose, updated=False)
+        due = (moved or self._forced or self._settling > 0) and beams.ranges.size > 0
+        if due:
+            self._use_beams(odom_pose, beams, moved=moved, odometry_jumped=odometry_jumped)
+        agreement = agreement_of(compose(self._map_to_odom, odom_pose), beams, self._world)
+        if agreement is not None:
+            self._lost.add(agreement)
+        return self._estimate(odom_pose, updated=due)
+
+    def _use_beams(self, odom_pose: Array, beams: Beams, *, moved: bool, odometry_jumped: bool) -> None:
         self._move(odom_pose, odometry_jumped)
         if self._settling and not moved:
             self._particles += ROUGHENING * self._generator.standard_normal(self._particles.shape)
@@ -196,7 +208,6 @@ class Amcl:
         self._settling = max(self._settling - 1, 0)
         self._weigh(beams)
         self._look_closely(odom_pose, beams)
-        return self._estimate(odom_pose, updated=True)
 
     def _move(self, odom_pose: Array, odometry_jumped: bool) -> None:
         """Move the particles as odometry did since they last moved."""
@@ -225,6 +236,7 @@ class Amcl:
         self._settling = 1
         self._scans = 0
         self._slow = self._fast = 0.0
+        self._lost.reset()
         self._mean, self._covariance = mean_and_covariance(particles, self._weights)
         self._map_to_odom = np.zeros(3)
 
@@ -295,6 +307,7 @@ class Amcl:
             self._weights.copy(),
             self._map_to_odom.copy(),
             updated,
+            self._lost.is_lost,
         )
 
 

@@ -30,6 +30,7 @@ from daidalos.nodes.conversions import (
     scan_data,
     transform_stamped,
 )
+from daidalos.nodes.hold_back import HoldBack
 from daidalos.nodes.nav2_amcl._parameters import AmclParameters, listens_elsewhere
 from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.scan_reports import LATE_NS, ScanReports
@@ -80,6 +81,8 @@ class Localizer:
         self._is_active = is_active
         self._log = node.get_logger()
         self._reports = ScanReports(node)
+        frames = f"{settings.global_frame_id} -> {settings.odom_frame_id}"
+        self._hold_back = HoldBack(node.get_clock(), self._reports, frames)
         self._lock = threading.RLock()
         self._filter: Amcl | None = None
         self._grid: OccupancyGrid | None = None
@@ -325,7 +328,9 @@ class Localizer:
         if estimate.updated:
             self._publish_pose(estimate, scan.header.stamp)
             self._publish_particles(estimate, stamp_ns)
-        if self._settings.tf_broadcast:
+        if estimate.lost:
+            self._hold_back.begin(scan.header.frame_id)
+        if self._settings.tf_broadcast and not self._hold_back.is_active:
             stamp = time_message(stamp_ns + round(1e9 * self._settings.transform_tolerance))
             frames = self._settings.global_frame_id, self._settings.odom_frame_id
             self._broadcaster.sendTransform(transform_stamped(estimate.map_to_odom, *frames, stamp))

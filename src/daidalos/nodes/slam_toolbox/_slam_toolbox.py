@@ -23,6 +23,7 @@ from daidalos.nodes.conversions import (
     scan_data,
     transform_stamped,
 )
+from daidalos.nodes.hold_back import HoldBack
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.parameters import declare, declare_without_effect
 from daidalos.nodes.qos import LATCHED
@@ -39,9 +40,6 @@ _SCANS_A_MAP = 100
 
 _AUTOSTART = 1.0
 """Time [s] after which a node that nobody configures starts by itself, as before it had a lifecycle."""
-
-_HOLD_BACK_NS = 1_500_000_000
-"""Time [ns] without a transform after a scan that does not fit: long enough for navigation to give its goal up."""
 
 _WATCH_PERIOD = 0.5
 """Time [s] between looks at scans that wait for their transform."""
@@ -76,8 +74,10 @@ class SlamToolbox(ManagedNode):
         """Done when the algorithms are compiled and scans are processed."""
         self._saved: Any = None
         self.lock = threading.Lock()
-        self._held_back_until_ns = 0
         self._reports = ScanReports(self)
+        self._hold_back = HoldBack(
+            self.get_clock(), self._reports, f"{self.settings.map_frame} -> {self.settings.odom_frame}"
+        )
         self._waiting: deque[tuple[int, Any]] = deque(maxlen=None if self.keeps_every_scan else p.scan_queue_size)
         self._current: tuple[int, Any] | None = None
         self._timers_of_activity: list[Any] = []
@@ -258,21 +258,11 @@ class SlamToolbox(ManagedNode):
         if self.slam.closing_is_due:
             self._closing.reset()
         if not result.fits:
-            self._hold_back(frame)
+            self._hold_back.begin(frame)
         if result.problem:
             self._reports.report(result.problem.split(":")[0], f"a scan of '{frame}': {result.problem}")
         if result.matched or result.added:
             self._publish_pose(result, scan.header.stamp)
-
-    def _hold_back(self, frame: str) -> None:
-        """Publish no transform for a while, so that whoever drives the robot stops: it may not be where it seems."""
-        self._held_back_until_ns = self.get_clock().now().nanoseconds + _HOLD_BACK_NS
-        p = self.settings
-        self._reports.report(
-            "fit",
-            f"a scan of '{frame}' does not fit the map: the robot may have been moved, or its odometry be wrong; "
-            f"{p.map_frame} -> {p.odom_frame} is not published for {1e-9 * _HOLD_BACK_NS:g} s",
-        )
 
     def _close_loops(self) -> None:
         """Close loops of the newest key scan beside the scans that come meanwhile."""
@@ -323,8 +313,7 @@ class SlamToolbox(ManagedNode):
         self._pose_publisher.publish(message)
 
     def _publish_transform(self) -> None:
-        held_back_ns = self._held_back_until_ns - self.get_clock().now().nanoseconds
-        if self.map_to_odom is None or 0 < held_back_ns <= _HOLD_BACK_NS:
+        if self.map_to_odom is None or self._hold_back.is_active:
             return
         # Stamped ahead, as slam_toolbox does: those who ask for "now" need not wait for the next one.
         stamp = time_message(self.get_clock().now().nanoseconds + round(1e9 * self.settings.transform_timeout))
