@@ -9,6 +9,15 @@ from typing import Any
 
 Converter = Callable[[Any], Any]
 
+_FIX = {
+    "header": "header",
+    "status": "status.status",
+    "latitude": "latitude",
+    "longitude": "longitude",
+    "altitude": "altitude",
+    "covariance": "position_covariance",
+    "covariance_type": "position_covariance_type",
+}
 _PLACES: tuple[dict[str, dict[str, str]], ...] = (
     {
         "geometry_msgs/msg/Pose": {"position": "position", "rotation": "orientation"},
@@ -48,6 +57,7 @@ _PLACES: tuple[dict[str, dict[str, str]], ...] = (
         "geometry_msgs/msg/Wrench": {"force": "force", "torque": "torque"},
         "geometry_msgs/msg/WrenchStamped": {"header": "header", "force": "wrench.force", "torque": "wrench.torque"},
     },
+    {"sensor_msgs/msg/NavSatFix": _FIX, "gps_msgs/msg/GPSFix": _FIX},
     {
         "geometry_msgs/msg/Point": {"x": "x", "y": "y", "z": "z"},
         "geometry_msgs/msg/Vector3": {"x": "x", "y": "y", "z": "z"},

@@ -16,6 +16,7 @@ _NAMES = {
     "geometry_msgs": "Pose PoseArray:Pose_V PoseStamped:Pose Point:Vector3d Quaternion Transform:Pose "
     "TransformStamped:Pose Twist TwistStamped:Twist TwistWithCovariance TwistWithCovarianceStamped:TwistWithCovariance "
     "PoseWithCovariance PoseWithCovarianceStamped:PoseWithCovariance Vector3:Vector3d Wrench WrenchStamped:Wrench",
+    "gps_msgs": "GPSFix:NavSat",
     "nav_msgs": "Odometry Odometry:OdometryWithCovariance",
     "rosgraph_msgs": "Clock",
     "sensor_msgs": "BatteryState CameraInfo FluidPressure Image Imu:IMU JointState:Model Joy LaserScan "
