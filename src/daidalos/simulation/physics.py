@@ -11,6 +11,7 @@ import mujoco
 from daidalos.simulation.conversion.model_build import GeomInfo
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import Forces
+from daidalos.simulation.scenery import MAX_BATCH, Scenery
 from daidalos.simulation.stage import Stage
 
 _log = logging.getLogger(__name__)
@@ -68,7 +69,10 @@ class Physics:
         self.can_draw = can_draw
         self._warnings = data.warning.number  # a view
         self._bodies: dict[str, int] = {}
-        self.changed()
+        self._make_stale()
+        self.refresh_positions()
+        scenery = Scenery(model, data)
+        self._scenery = scenery if scenery.is_large else None
 
     def step(self, count: int) -> None:
         """Run steps in one call.
@@ -78,8 +82,11 @@ class Physics:
         SimulationError
             When they gave numbers that are none; names the body that was first.
         """
-        mujoco.mj_step(self.model, self.data, count)
-        self.changed()
+        if self._scenery is None:
+            mujoco.mj_step(self.model, self.data, count)
+        else:
+            self._step_near(self._scenery, count)
+        self._make_stale()
         counts = self._warnings.tolist()
         for kind in _DIVERGED:
             if counts[kind]:
@@ -90,13 +97,32 @@ class Physics:
                     "look at its inertia, limits and gains"
                 )
 
+    def _step_near(self, scenery: Scenery, count: int) -> None:
+        """Run steps without the static bodies that nothing is near."""
+        most = max(1, int(MAX_BATCH / self.model.opt.timestep))
+        while count > 0:
+            self._update(scenery)
+            part = min(count, most)
+            mujoco.mj_step(self.model, self.data, part)
+            count -= part
+
+    def _update(self, scenery: Scenery) -> None:
+        if scenery.is_forgotten:
+            self.refresh_positions()
+        scenery.update(self.data)
+
     def wake(self) -> None:
         """Wake all sleeping bodies by setting a velocity."""
         asleep = self.data.tree_asleep >= 0
         self.data.qvel[asleep[self.model.dof_treeid]] = 1e-9
 
     def changed(self) -> None:
-        """Mark everything derived from the state as out of date."""
+        """Mark everything derived from the state as out of date, after a change from outside."""
+        self._make_stale()
+        if self._scenery is not None:
+            self._scenery.forget()
+
+    def _make_stale(self) -> None:
         self._positions_fresh = self._velocities_fresh = self._all_fresh = self._loads_fresh = False
 
     def refresh_positions(self) -> None:
@@ -116,6 +142,8 @@ class Physics:
     def refresh(self) -> None:
         """Update everything: velocities, accelerations, contacts and their forces."""
         if not self._all_fresh:
+            if self._scenery is not None:
+                self._update(self._scenery)
             mujoco.mj_forward(self.model, self.data)
             self._positions_fresh = self._velocities_fresh = self._all_fresh = True
 
