@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from daidalos.common.parameters import ParameterError, parameters_from
+from daidalos.common.pose2 import inverse, move_along_arc, transform_points
 from daidalos.navigation.collision_monitor import Zone, ZoneParameters
 
 SQUARE = "[[0.5, 0.5], [0.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]]"
@@ -48,6 +49,23 @@ def test_approach_keeps_the_time_to_a_collision():
     assert approach.judge(FORWARD, AHEAD).ratio == 0.0
     assert approach.judge(np.array([0.0, 0.5, 0.0]), wall + np.array([0.0, 1.2])).ratio == 1.0
     assert approach.judge(np.array([0.5, 0.0, 1.5]), np.tile([[0.3, 0.6]], (4, 1))).ratio < 0.5
+
+
+@pytest.mark.parametrize("shape", [{}, {"type": "circle", "points": "", "radius": 0.6}])
+def test_the_time_to_a_collision_is_that_of_all_points(shape):
+    random = np.random.default_rng(0)
+    approach = zone(action_type="approach", time_before_collision=2.0, simulation_time_step=0.1, **shape)
+    ratios = set()
+    for _ in range(200):
+        velocity = random.uniform(-1.0, 1.0, 3)
+        points = random.uniform(-2.5, 2.5, 2) + random.normal(0.0, 0.1, (8, 2))
+        times = (0.1 * k for k in range(20))
+        poses = ((time, move_along_arc(np.zeros(3), *(velocity * time)[[0, 2, 1]])) for time in times)
+        first = next((t for t, pose in poses if approach.holds_obstacle(transform_points(inverse(pose), points))), 2.0)
+        ratio = approach.judge(velocity, points).ratio
+        assert ratio == pytest.approx(first / 2.0)
+        ratios.add(round(ratio, 3))
+    assert len(ratios) > 5
 
 
 def test_a_velocity_chooses_the_shape():

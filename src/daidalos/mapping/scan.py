@@ -240,10 +240,12 @@ def _normals(points: Array, reach: Array, increment: float, sensor: Array) -> Ar
 def _end_of_surface(points: Array, start: int, step: int, radius: float) -> int:
     """Return the last index in one direction along the scan within the radius and without a jump."""
     i = start
+    squared = radius * radius
+    x, y = points[start, 0], points[start, 1]
     while 0 <= i + step < points.shape[0]:
-        gap = np.hypot(points[i + step, 0] - points[i, 0], points[i + step, 1] - points[i, 1])
-        away = np.hypot(points[i + step, 0] - points[start, 0], points[i + step, 1] - points[start, 1])
-        if gap > radius or away > radius:
+        dx, dy = points[i + step, 0] - points[i, 0], points[i + step, 1] - points[i, 1]
+        away_x, away_y = points[i + step, 0] - x, points[i + step, 1] - y
+        if dx * dx + dy * dy > squared or away_x * away_x + away_y * away_y > squared:
             break
         i += step
     return i

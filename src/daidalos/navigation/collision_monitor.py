@@ -14,6 +14,9 @@ from daidalos.common.pose2 import inverse, move_along_arc, transform_points
 
 _POINTS = "Corners in the base frame, such as [[0.3, 0.2], [0.3, -0.2], [0.0, 0.0]]"
 
+_ROUNDING = 1e-6
+"""Distance [m] by which rounding may bring a point nearer."""
+
 _CIRCLE_CORNERS = 32
 
 
@@ -180,11 +183,22 @@ class Zone:
     def _time_to_collision(self, velocity: Array, points: Array) -> float:
         """Return after what time [s] the robot touches an obstacle, infinity where not soon."""
         p = self.parameters
+        reach = self._radius + float(np.hypot(velocity[0], velocity[1])) * p.time_before_collision + _ROUNDING
+        points = points[np.square(points).sum(axis=1) <= reach * reach]
+        if len(points) < p.threshold:
+            return np.inf
         for time in np.arange(0.0, p.time_before_collision, p.simulation_time_step):
             x, y, yaw = (velocity * time).tolist()
             if self.holds_obstacle(transform_points(inverse(move_along_arc(np.zeros(3), x, yaw, y)), points)):
                 return float(time)
         return np.inf
+
+    @property
+    def _radius(self) -> float:
+        """Largest distance [m] of a point of the zone from the base's origin."""
+        if self.corners is None or self.parameters.type == "circle":
+            return self.parameters.radius
+        return float(np.hypot(*self.corners.T).max())
 
     def _choose_shape(self, velocity: Array) -> None:
         """Take the first shape whose range has the velocity; keep the last one where none has."""

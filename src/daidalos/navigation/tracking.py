@@ -62,17 +62,9 @@ class Track:
         """How it moves [m/s]; shape (2,)."""
         return self.state[2:]
 
-    def predict(self, step: float) -> None:
-        """Move it on by a time [s], at constant velocity."""
-        transition = np.eye(4)
-        transition[0, 2] = transition[1, 3] = step
+    def predict(self, transition: Array, noise: Array) -> None:
+        """Move it on by a step of time; see `_constant_velocity`."""
         self.state = transition @ self.state
-        gain = np.concatenate([np.full(2, 0.5 * step * step), np.full(2, step)]) * _ACCELERATION_STD
-        noise = np.zeros((4, 4))
-        for axis in range(2):
-            along = np.zeros(4)
-            along[[axis, axis + 2]] = gain[[axis, axis + 2]]
-            noise += np.outer(along, along)
         self.covariance = transition @ self.covariance @ transition.T + noise
 
     def correct(self, centre: Array, radius: float, time: float) -> None:
@@ -122,8 +114,10 @@ class MovingObstacleTracker:
             self.reset()
         if time <= self._time:
             return
-        for track in self.tracks:
-            track.predict(time - self._time)
+        if self.tracks:
+            transition, noise = _constant_velocity(time - self._time)
+            for track in self.tracks:
+                track.predict(transition, noise)
         step, self._time = time - self._time, time
         objects = free_standing(observation, self.max_width)
         self._associate(objects, time, step)
@@ -164,6 +158,14 @@ class MovingObstacleTracker:
         return speed > max(self.min_speed, 2.0 * deviation) and away > 4.0 * _MEASUREMENT_STD
 
 
+def _constant_velocity(step: float) -> tuple[Array, Array]:
+    """Return the transition of a state over a time [s], and the covariance that it adds; both (4, 4)."""
+    transition = np.eye(4)
+    transition[0, 2] = transition[1, 3] = step
+    gain = np.array([[0.5 * step * step, 0.0, step, 0.0], [0.0, 0.5 * step * step, 0.0, step]]) * _ACCELERATION_STD
+    return transition, gain.T @ gain
+
+
 def free_standing(observation: Observation, max_width: float) -> list[tuple[Array, float]]:
     """Return centre (x, y) [m] and half of the width [m] of each object that stands free in a scan.
 
@@ -187,22 +189,24 @@ def free_standing(observation: Observation, max_width: float) -> list[tuple[Arra
         return []
     first = int(np.flatnonzero(~joined)[0]) + 1  # a run may go over the end of the scan
     order = np.roll(np.arange(count), -first)
+    begins, stops = _runs(order, joined)
+    first_rays, last_rays = order[begins], order[stops - 1]
+    widths = np.hypot(*(ends[last_rays] - ends[first_rays]).T)
+    is_object = hits[first_rays] & (widths <= max_width) & (stops - begins >= 2)
+    is_object &= ranges[first_rays - 1] > ranges[first_rays] + _BACKGROUND
+    is_object &= ranges[following[last_rays]] > ranges[last_rays] + _BACKGROUND
     found = []
-    for run in _runs(order, joined):
-        if not hits[run[0]]:
-            continue
-        points = ends[run]
-        width = float(np.hypot(*(points[-1] - points[0])))
-        if width > max_width or len(run) < 2:
-            continue
-        before, after = (run[0] - 1) % count, (run[-1] + 1) % count
-        if ranges[before] > ranges[run[0]] + _BACKGROUND and ranges[after] > ranges[run[-1]] + _BACKGROUND:
-            centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-            found.append((centre, max(0.5 * width, 0.05)))
+    for begin, stop, width in zip(begins[is_object], stops[is_object], widths[is_object].tolist(), strict=True):
+        points = ends[order[begin:stop]]
+        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        found.append((centre, max(0.5 * width, 0.05)))
     return found
 
 
-def _runs(order: NDArray[np.intp], joined: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """Return the runs of rays that are joined with the next."""
-    breaks = np.flatnonzero(~joined[order]) + 1
-    return [run for run in np.split(order, breaks) if run.size]
+def _runs(order: NDArray[np.intp], joined: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return where the runs of joined rays begin in an order of rays, and the places after their ends.
+
+    The last ray of the order is not joined with its next one.
+    """
+    stops = np.flatnonzero(~joined[order]) + 1
+    return np.concatenate([[0], stops[:-1]]), stops

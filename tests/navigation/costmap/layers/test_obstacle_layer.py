@@ -100,6 +100,14 @@ def test_a_ray_of_one_scan_does_not_wipe_out_what_another_hit(ground):
     assert costmap.cost_at(2.05, 1.05) == 254
 
 
+def test_of_several_readings_between_two_updates_the_latest_alone_is_used(ground):
+    layer = layer_of()
+    for stamp, x in enumerate((1.55, 2.05, 2.55)):
+        layer.add_observation(Observation(HERE[:2], np.array([[x, 1.05]]), np.array([True]), float(stamp)))
+    costmap = refresh(layer, ground, 3.0)
+    assert [costmap.cost_at(x, 1.05) for x in (1.55, 2.05, 2.55)] == [0, 0, 254]
+
+
 def test_readings_persist_as_long_as_told(ground):
     layer = layer_of(observation_persistence=1.0, clearing=False)
     see(layer, ground, [2.05, 1.05], stamp=0.0)

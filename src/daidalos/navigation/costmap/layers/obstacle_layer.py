@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,6 +77,27 @@ class ObstacleLayerParameters(Parameters):
     )
 
 
+class _Reading:
+    """Measurement that is converted to an observation where it is used: most come between two updates.
+
+    Parameters
+    ----------
+    stamp : float
+        Time [s] of the measurement.
+    convert : callable
+        Returns the observation.
+    """
+
+    def __init__(self, stamp: float, convert: Callable[[], Observation]) -> None:
+        self.stamp = stamp
+        self._convert = convert
+
+    @cached_property
+    def observation(self) -> Observation:
+        """Rays of the measurement."""
+        return self._convert()
+
+
 class ObstacleLayer(Layer):
     """Layer of observed obstacles, kept until a ray passes through them.
 
@@ -94,7 +115,7 @@ class ObstacleLayer(Layer):
         super().__init__(parameters, context)
         self.default = NO_INFORMATION if self.context.track_unknown_space else FREE_SPACE
         self._seen: Costmap | None = None
-        self._buffers: dict[str, list[Observation]] = {name: [] for name in self.parameters.sources}
+        self._buffers: dict[str, list[_Reading]] = {name: [] for name in self.parameters.sources}
         self._under_robot: Array | None = None
         self._latest: dict[str, float] = {}
         self._is_warned_of_heights = False
@@ -107,8 +128,7 @@ class ObstacleLayer(Layer):
         KeyError
             There is no source of that name.
         """
-        self._buffers[source].append(observation)
-        self._latest[source] = observation.stamp
+        self._add(source, observation.stamp, lambda: observation)
 
     @property
     def inputs(self) -> tuple[Input, ...]:
@@ -125,11 +145,19 @@ class ObstacleLayer(Layer):
     def add_scan(self, source: str, scan: LaserScanData, base_pose: Array, stamp: float) -> None:
         """Take a scan of one of the sources; see `Observation.from_scan`."""
         inf_is_valid = self.parameters.sources[source].inf_is_valid
-        self.add_observation(Observation.from_scan(scan, base_pose, stamp, inf_is_valid=inf_is_valid), source)
+        self._add(source, stamp, lambda: Observation.from_scan(scan, base_pose, stamp, inf_is_valid=inf_is_valid))
 
     def add_cloud(self, source: str, cloud: CloudData, base_pose: Array, stamp: float) -> None:
         """Take a point cloud of one of the sources; see `Observation.from_cloud`."""
-        self.add_observation(Observation.from_cloud(cloud, base_pose, stamp), source)
+        self._add(source, stamp, lambda: Observation.from_cloud(cloud, base_pose, stamp))
+
+    def _add(self, source: str, stamp: float, convert: Callable[[], Observation]) -> None:
+        """Keep a measurement, instead of the last one where none is to persist."""
+        buffer = self._buffers[source]
+        if self.parameters.sources[source].observation_persistence <= 0.0:
+            buffer.clear()
+        buffer.append(_Reading(stamp, convert))
+        self._latest[source] = stamp
 
     def missing_input(self, now: float) -> str:
         """Return which sensor has observed nothing for its `expected_update_rate`."""
@@ -168,9 +196,9 @@ class ObstacleLayer(Layer):
         if self._seen is None:
             return bounds
         readings = [
-            (self.parameters.sources[name], observation)
+            (self.parameters.sources[name], reading.observation)
             for name, buffer in self._buffers.items()
-            for observation in buffer
+            for reading in buffer
         ]
         for source, observation in readings:
             if source.clearing:
