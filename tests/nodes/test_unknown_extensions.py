@@ -66,6 +66,12 @@ MPPI = {"plugin": "nav2_mppi_controller::MPPIController", "critics": ["CostCriti
             "'voxels.plugin': there is no costmap layer 'nav2_costmap_2d::BoxLayer'; ",
         ),
         (
+            ControllerServer,
+            LOCAL,
+            {"plugins": [], "filters": ["zones"], "zones": {"plugin": "nav2_costmap_2d::KeepoutFiltre"}},
+            "'zones.plugin': there is no costmap layer 'nav2_costmap_2d::KeepoutFiltre'; did you mean ",
+        ),
+        (
             BehaviorServer,
             "/behavior_server",
             {"behavior_plugins": ["assist"], "assist": {"plugin": "nav2_behaviors::Teleop"}},

@@ -39,6 +39,10 @@ def _ignore(line: str) -> None:
     """Ignore a line for the user."""
 
 
+def _locate_nothing(frame: str) -> None:
+    """Return None: no frame is known."""
+
+
 @dataclass(frozen=True)
 class NavigationContext:
     """Context of an extension beside its parameters.
@@ -59,6 +63,9 @@ class NavigationContext:
         Of random numbers.
     warn : callable
         Called with a line for the user.
+    locate : callable
+        Called with the name of a frame; returns its pose (x, y, yaw) in the global frame and the age [s] of that, or
+        None where it is not known.
     maker : callable or None
         Makes another extension; see `make`.
     """
@@ -71,6 +78,7 @@ class NavigationContext:
     track_unknown_space: bool = True
     seed: int = 0
     warn: Callable[[str], None] = _ignore
+    locate: Callable[[str], tuple[Array, float] | None] = _locate_nothing
     maker: Callable[[Kind[Any], str, str, str], Any] | None = None
 
     def make(self, kind: Kind[T], name: str, parameter: str, below: str = "") -> T:
@@ -396,16 +404,18 @@ class Input:
     topic : str
         Its topic; empty for the costmap's own ``map_topic``.
     type : type
-        For a layer `OccupancyGrid`, `LaserScanData` or `CloudData`. For a behaviour `numpy.ndarray`, for a velocity
+        For a layer `OccupancyGrid`, `LaserScanData` or `CloudData`; for a costmap filter `FilterInfo` or `FilterMask`.
+        For a behaviour `numpy.ndarray`, for a velocity
         (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`, for an empty message, as for a task at a waypoint.
     take : callable
         Called with a map; or with a scan or cloud, the base pose at its time in the costmap's frame, and that time
-        [s]; or with a velocity and the time [s]; or with nothing.
+        [s]; or with a velocity and the time [s]; or with nothing. Called with the information about a filter's mask it
+        returns the input of that mask, or None where the filter cannot use it.
     """
 
     topic: str
     type: type
-    take: Callable[..., None]
+    take: Callable[..., Input | None]
 
 
 class Layer(NavigationExtension):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.costmap_filter import FilterInfo
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.observation import CloudData
@@ -29,13 +31,12 @@ from daidalos.navigation.extensions import COSTMAP_LAYERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import (
     cloud_data,
-    grid_array,
-    pose2_of,
     pose2_of_transform,
     scan_data,
 )
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
+from daidalos.nodes.nav2_costmap_2d._costmap_filters import listen_to_filter_info, occupancy_grid, serve_toggle
 from daidalos.nodes.nav2_costmap_2d._costmap_interface import CostmapInterface
 from daidalos.nodes.nav2_costmap_2d._transform_age import TransformAges
 from daidalos.nodes.navigation_extensions import ExtensionMaker
@@ -80,6 +81,9 @@ class CostmapNodeParameters(CostmapParameters):
     )
     plugins: tuple[str, ...] = parameter(
         tuple(_DEFAULT_PLUGINS), "Names of the layers, the lowest first.", unique=True, read_only=True
+    )
+    filters: tuple[str, ...] = parameter(
+        (), "Names of the costmap filters, which are applied after the layers.", unique=True, read_only=True
     )
     map_topic: str = parameter("/map", "Topic of the map.", not_empty=True, read_only=True)
 
@@ -155,7 +159,9 @@ class CostmapNode(ManagedNode):
 
     def configure(self) -> None:
         """Make the layers, the subscriptions that they need and the publishers."""
-        layers = [self._make_layer(name) for name in self._settings.plugins]
+        layers = [self._make_layer(name) for name in (*self._settings.plugins, *self._settings.filters)]
+        for name in self._settings.filters:
+            serve_toggle(self, name)
         self.layered = LayeredCostmap(self._settings, layers)
         self._interface = CostmapInterface(self)
 
@@ -186,6 +192,10 @@ class CostmapNode(ManagedNode):
 
     # Layers.
 
+    def outer_topic(self, topic: str) -> str:
+        """Return the name of a topic of a layer; a relative one stands in the namespace of the server."""
+        return topic if topic.startswith("/") else f"{self._outer_namespace}/{topic}"
+
     @property
     def extension_context(self) -> NavigationContext:
         """What layers, planners and controllers of the costmap may use."""
@@ -195,27 +205,36 @@ class CostmapNode(ManagedNode):
             global_frame=self.global_frame,
             base_frame=self.base_frame,
             track_unknown_space=self._settings.track_unknown_space,
+            locate=self._locate,
         )
+
+    def _locate(self, frame: str) -> tuple[Any, float] | None:
+        """Return the latest pose of a frame in the costmap's frame and its age [s], None while it is not known."""
+        try:
+            found, age = self._latest_transform(frame)
+        except TransformFailed:
+            return None
+        return (np.zeros(3) if found is None else pose2_of_transform(found.transform)), age
 
     def _make_layer(self, name: str) -> Layer:
         maker = ExtensionMaker(self, self.extension_context)
         layer = maker.make(COSTMAP_LAYERS, name, _DEFAULT_PLUGINS.get(name, ""))
+        listeners: dict[type, Callable[[Input], None]] = {
+            OccupancyGrid: self._listen_to_map,
+            LaserScanData: self._listen_to_scans,
+            CloudData: self._listen_to_clouds,
+            FilterInfo: partial(listen_to_filter_info, self),
+        }
         for one in layer.inputs:
-            {
-                OccupancyGrid: self._listen_to_map,
-                LaserScanData: self._listen_to_scans,
-                CloudData: self._listen_to_clouds,
-            }[one.type](one)
+            listeners[one.type](one)
         return layer
 
     def _listen_to_map(self, listened: Input) -> None:
         from nav_msgs.msg import OccupancyGrid as GridMessage
 
         def take(message: Any) -> None:
-            info = message.info
-            x, y, yaw = (float(value) for value in pose2_of(info.origin))
             try:
-                grid = OccupancyGrid(grid_array(message), info.resolution, (x, y, yaw))
+                grid = occupancy_grid(message)
             except UserError as error:
                 self.get_logger().error(str(error))
                 return
@@ -262,8 +281,8 @@ class CostmapNode(ManagedNode):
                 listened.take(sample.lifted(found.transform.translation.z), pose, seconds(stamp))
 
         # A message waits for its transform; updates and services do not wait with it.
-        topic = listened.topic if listened.topic.startswith("/") else f"{self._outer_namespace}/{listened.topic}"
         group = MutuallyExclusiveCallbackGroup()
+        topic = self.outer_topic(listened.topic)
         self.create_subscription(kind, topic, take, qos_profile_sensor_data, callback_group=group)
 
     # Cycle.

@@ -40,6 +40,8 @@ ARGUMENTS = [
     ("container_name", "nav2_container", "name of that container"),
     ("use_respawn", "True", "whether a process that ends is started again"),
     ("graph", "", "file of the graph of routes; starts the route server"),
+    ("use_keepout_zones", "True", "what KEEPOUT_ZONE_ENABLED in the parameter file stands for"),
+    ("use_speed_zones", "True", "what SPEED_ZONE_ENABLED in the parameter file stands for"),
     ("log_level", "info", "log level"),
 ]
 
@@ -63,8 +65,13 @@ def nodes(context):
     """Return the actions that start the nodes, given what the arguments are."""
     value = LaunchConfiguration
     namespace = value("namespace").perform(context)
+    zones = {"KEEPOUT_ZONE_ENABLED": value("use_keepout_zones"), "SPEED_ZONE_ENABLED": value("use_speed_zones")}
     file = RewrittenYaml(
-        source_file=value("params_file"), root_key=value("namespace"), param_rewrites={}, convert_types=True
+        source_file=value("params_file"),
+        root_key=value("namespace"),
+        param_rewrites={},
+        value_rewrites=zones,
+        convert_types=True,
     )
     given = ParameterFile(file, allow_substs=True)
     graph = value("graph").perform(context)

@@ -1,0 +1,75 @@
+"""Topics and services of costmap filters."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rclpy.parameter import Parameter
+
+from daidalos.common.errors import UserError
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.navigation.contracts import Input
+from daidalos.navigation.costmap.costmap_filter import FilterInfo, FilterMask
+from daidalos.nodes.conversions import grid_array, pose2_of
+from daidalos.nodes.qos import LATCHED
+
+if TYPE_CHECKING:
+    from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
+
+
+def occupancy_grid(message: Any) -> OccupancyGrid:
+    """Return the grid of a ``nav_msgs/msg/OccupancyGrid``.
+
+    Raises
+    ------
+    UserError
+        The message contradicts itself.
+    """
+    x, y, yaw = (float(value) for value in pose2_of(message.info.origin))
+    return OccupancyGrid(grid_array(message), message.info.resolution, (x, y, yaw))
+
+
+def listen_to_filter_info(node: CostmapNode, listened: Input) -> None:
+    """Subscribe to the information about a filter's mask, and to the mask that the latest one names."""
+    from nav2_msgs.msg import CostmapFilterInfo
+
+    masks: list[Any] = []
+
+    def take(message: Any) -> None:
+        info = FilterInfo(message.type, message.filter_mask_topic, message.base, message.multiplier)
+        with node.lock:
+            mask = listened.take(info)
+        if mask is not None:
+            while masks:
+                node.destroy_subscription(masks.pop())
+            masks.append(_listen_to_mask(node, mask))
+
+    node.create_subscription(CostmapFilterInfo, node.outer_topic(listened.topic), take, LATCHED)
+
+
+def _listen_to_mask(node: CostmapNode, listened: Input) -> Any:
+    """Return a subscription to a filter's mask."""
+    from nav_msgs.msg import OccupancyGrid as GridMessage
+
+    def take(message: Any) -> None:
+        try:
+            mask = FilterMask(occupancy_grid(message), message.header.frame_id)
+            with node.lock:
+                listened.take(mask)
+        except UserError as error:
+            node.get_logger().error(str(error))
+
+    return node.create_subscription(GridMessage, node.outer_topic(listened.topic), take, LATCHED)
+
+
+def serve_toggle(node: CostmapNode, name: str) -> None:
+    """Create the service ``<name>/toggle_filter``, which sets the parameter ``<name>.enabled``."""
+    from std_srvs.srv import SetBool
+
+    def toggle(request: Any, response: Any) -> Any:
+        (result,) = node.set_parameters([Parameter(f"{name}.enabled", value=bool(request.data))])
+        response.success = result.successful
+        response.message = result.reason or ("Enabled" if request.data else "Disabled")
+        return response
+
+    node.create_service(SetBool, f"{name}/toggle_filter", toggle)
