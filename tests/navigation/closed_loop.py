@@ -23,6 +23,7 @@ from daidalos.navigation.controllers.mppi_controller import MppiController, Mppi
 from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import SimpleProgressChecker
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
 from daidalos.navigation.controllers.rotation_shim_controller import RotationShimController
+from daidalos.navigation.controllers.teb_controller import TebController, TebParameters
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
@@ -253,6 +254,18 @@ def turtlebot(world, pose, known, seed=0, kind="mppi"):
         "mppi": mppi,
         "shim": RotationShimController(None, NavigationContext(footprint=footprint), primary=mppi),
         "graceful": GracefulController(None, NavigationContext(footprint=footprint)),
+        "teb": TebController(
+            TebParameters(
+                max_vel_theta=1.0,
+                acc_lim_x=2.5,
+                acc_lim_theta=3.2,
+                footprint_type="circular",
+                footprint_radius=0.22,
+                min_obstacle_dist=0.1,
+                inflation_dist=0.4,
+            ),
+            NavigationContext(footprint=footprint),
+        ),
         "rpp": RegulatedPurePursuitController(None, NavigationContext(footprint=footprint)),
     }[kind]
     return Stack(robot, footprint, controller, everywhere, around)

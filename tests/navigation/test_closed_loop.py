@@ -14,7 +14,9 @@ WALLS = FlatWorld(WORLD.segments[:32], WORLD.circles[:0])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("kind", "seed"), [("mppi", 1), ("mppi", 2), ("rpp", 1), ("rpp", 2), ("shim", 3)])
+@pytest.mark.parametrize(
+    ("kind", "seed"), [("mppi", 1), ("mppi", 2), ("rpp", 1), ("rpp", 2), ("shim", 3), ("teb", 1), ("teb", 2)]
+)
 def test_random_goals_among_obstacles_that_the_map_does_not_know(kind, seed):
     generator = np.random.default_rng(seed)
     stack = turtlebot(WORLD, free_pose(WORLD, generator), WALLS, seed, kind)
@@ -29,7 +31,7 @@ def test_random_goals_among_obstacles_that_the_map_does_not_know(kind, seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["mppi", "graceful"])
+@pytest.mark.parametrize("kind", ["mppi", "graceful", "teb"])
 def test_one_goal_through_a_door(kind):
     stack = turtlebot(WORLD, [1.5, 1.5, 0.0], WALLS, kind=kind)
     arrival = stack.drive_to(np.array([4.5, 0.8, -1.0]))

@@ -12,6 +12,7 @@ from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic,
 from daidalos.navigation.controllers.mppi.critics.obstacles_critic import ObstaclesCritic
 from daidalos.navigation.controllers.mppi.critics.path_align_legacy_critic import PathAlignLegacyCritic
 from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
+from daidalos.navigation.controllers.teb_controller import TebController
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
@@ -91,4 +92,6 @@ def _control(costmap: Costmap) -> None:
         vtheta_samples=3, critics=("BaseObstacle", "ObstacleFootprint", "PathDist")
     )  # fmt: skip
     sampling = DwbController(limits, NavigationContext(footprint=OUTLINE))
-    sampling.compute_velocity_commands(ControlInput(pose, rest, path, path[-1], 2.0, costmap))
+    beside = ControlInput(pose, rest, path, path[-1], 2.0, costmap)
+    sampling.compute_velocity_commands(beside)
+    TebController(None, NavigationContext(footprint=OUTLINE)).compute_velocity_commands(beside)

@@ -1,0 +1,1 @@
+"""Timed elastic bands: poses with the times between them, optimised by sparse least squares."""
