@@ -418,6 +418,41 @@ class Input:
     take: Callable[..., Input | None]
 
 
+@dataclass(frozen=True)
+class SpeedLimit:
+    """Limit of the robot's speed.
+
+    Attributes
+    ----------
+    value : float
+        Speed [m/s] or percentage of the maximum; 0 for no limit.
+    percentage : bool
+        Whether it is a percentage.
+    """
+
+    value: float
+    percentage: bool
+
+
+@dataclass(frozen=True)
+class Output:
+    """Topic that a costmap layer publishes on.
+
+    Attributes
+    ----------
+    topic : str
+        Its topic.
+    type : type
+        `SpeedLimit` or `bool`.
+    give : callable
+        Called after each update of the costmap; returns what is published, or None.
+    """
+
+    topic: str
+    type: type
+    give: Callable[[], Any]
+
+
 class Layer(NavigationExtension):
     """Source of costs; layers are combined in the order of the costmap's list.
 
@@ -442,6 +477,11 @@ class Layer(NavigationExtension):
     @property
     def inputs(self) -> tuple[Input, ...]:
         """Topics that the layer subscribes to."""
+        return ()
+
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """Topics that the layer publishes on while it is enabled."""
         return ()
 
     def missing_input(self, now: float) -> str:

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nav2_msgs.msg import Costmap, CostmapFilterInfo
+from nav2_msgs.msg import Costmap, CostmapFilterInfo, SpeedLimit
+from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
 from daidalos.nodes.conversions import grid_message
@@ -90,3 +91,29 @@ def test_a_service_switches_a_filter(stage: Callable[[dict[str, Any]], Stage]) -
         assert (answer.success, answer.message) == (True, message)
         bench.step_until_row([cost, 0, 0, 0])
         assert bench.server._costmap.get_parameter("keepout_filter.enabled").value is enabled
+
+
+def test_speed_limits_and_states_are_published_where_the_robot_is(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    names = {"speed_filter": "SpeedFilter", "binary_filter": "BinaryFilter"}
+    filters = {
+        name: {"plugin": f"nav2_costmap_2d::{kind}", "filter_info_topic": f"/{name}_info"}
+        for name, kind in names.items()
+    }
+    test = stage({NODE: {**PARAMETERS, **filters, "filters": list(names)}})
+    limits, states = test.collect(SpeedLimit, "/speed_limit"), test.collect(Bool, "/binary_state")
+    bench = Bench(test)
+    bench.robot.pose = np.array([0.5, 0.5, 0.0])
+    bench.show("/zones", [0, 60])
+    for name, kind in (("speed_filter", 1), ("binary_filter", 3)):
+        info = CostmapFilterInfo(type=kind, filter_mask_topic="zones", multiplier=1.0)
+        test.publish(f"/{name}_info", info, LATCHED)
+    test.step_until(lambda: bool(states))
+    for x, limit, state in ((1.5, 60.0, True), (0.5, 0.0, False)):
+        bench.robot.pose = np.array([x, 0.5, 0.0])
+        test.step_until(lambda limit=limit: bool(limits) and limits[-1].speed_limit == limit)
+        test.step_until(lambda state=state: states[-1].data == state)
+    assert [(one.percentage, one.speed_limit, one.header.frame_id) for one in limits] == [
+        (True, 60.0, "map"),
+        (True, 0.0, "map"),
+    ]
+    assert [one.data for one in states] == [False, True, False]

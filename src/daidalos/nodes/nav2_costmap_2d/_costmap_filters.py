@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rclpy.parameter import Parameter
 
 from daidalos.common.errors import UserError
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.navigation.contracts import Input
+from daidalos.navigation.contracts import Input, Layer, Output, SpeedLimit
 from daidalos.navigation.costmap.costmap_filter import FilterInfo, FilterMask
 from daidalos.nodes.conversions import grid_array, pose2_of
 from daidalos.nodes.qos import LATCHED
@@ -60,6 +61,34 @@ def _listen_to_mask(node: CostmapNode, listened: Input) -> Any:
             node.get_logger().error(str(error))
 
     return node.create_subscription(GridMessage, node.outer_topic(listened.topic), take, LATCHED)
+
+
+def output_publisher(node: CostmapNode, layer: Layer, output: Output) -> Callable[[], None]:
+    """Return a function that publishes what an output of a layer gives, while the layer is enabled."""
+    from nav2_msgs.msg import SpeedLimit as SpeedLimitMessage
+    from std_msgs.msg import Bool, Header
+
+    def speed_limit(limit: SpeedLimit) -> Any:
+        header = Header(frame_id=node.global_frame, stamp=node.get_clock().now().to_msg())
+        return SpeedLimitMessage(header=header, percentage=limit.percentage, speed_limit=limit.value)
+
+    def state(value: bool) -> Any:
+        return Bool(data=value)
+
+    kinds: dict[type, tuple[Any, Callable[[Any], Any]]] = {
+        SpeedLimit: (SpeedLimitMessage, speed_limit),
+        bool: (Bool, state),
+    }
+    kind, message = kinds[output.type]
+    publisher = node.create_publisher(kind, node.outer_topic(output.topic), 10)
+
+    def publish() -> None:
+        with node.lock:
+            value = output.give() if layer.enabled else None
+        if value is not None:
+            publisher.publish(message(value))
+
+    return publish
 
 
 def serve_toggle(node: CostmapNode, name: str) -> None:

@@ -36,7 +36,12 @@ from daidalos.nodes.conversions import (
 )
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
-from daidalos.nodes.nav2_costmap_2d._costmap_filters import listen_to_filter_info, occupancy_grid, serve_toggle
+from daidalos.nodes.nav2_costmap_2d._costmap_filters import (
+    listen_to_filter_info,
+    occupancy_grid,
+    output_publisher,
+    serve_toggle,
+)
 from daidalos.nodes.nav2_costmap_2d._costmap_interface import CostmapInterface
 from daidalos.nodes.nav2_costmap_2d._transform_age import TransformAges
 from daidalos.nodes.navigation_extensions import ExtensionMaker
@@ -163,6 +168,7 @@ class CostmapNode(ManagedNode):
         for name in self._settings.filters:
             serve_toggle(self, name)
         self.layered = LayeredCostmap(self._settings, layers)
+        self._publishers = [output_publisher(self, layer, one) for layer in layers for one in layer.outputs]
         self._interface = CostmapInterface(self)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -411,6 +417,8 @@ class CostmapNode(ManagedNode):
             self._updates += 1
             if not self._missing_input():
                 self.updated = now.to_msg()
+        for publish in self._publishers:
+            publish()
 
     def snapshot(self) -> Costmap:
         """Return a copy of the costmap."""
