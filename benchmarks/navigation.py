@@ -18,6 +18,7 @@ from daidalos.navigation.contracts import ControlInput, NavigationContext
 from daidalos.navigation.controllers.dwb_controller import DwbController, DwbParameters
 from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
+from daidalos.navigation.controllers.teb_controller import TebController, TebParameters
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import LayeredCostmap
@@ -131,10 +132,12 @@ def measure_controllers() -> dict[str, float | str]:
         RegulatedPurePursuitController(None, context),
         DwbController(WAFFLE, context),
     )
+    band = TebController(TebParameters(min_obstacle_dist=0.2), context)
     return {
         "navigation.mppi_cycle_1000x56_ms": median_ms(lambda _: mppi.compute_velocity_commands(control), count=100),
         "navigation.mppi_cycle_2000x56_ms": median_ms(lambda _: large.compute_velocity_commands(control), count=100),
         "navigation.dwb_cycle_ms": median_ms(lambda _: window.compute_velocity_commands(control), count=100),
+        "navigation.teb_cycle_ms": median_ms(lambda _: band.compute_velocity_commands(control), count=100),
         "navigation.pure_pursuit_cycle_ms": median_ms(lambda _: pursuit.compute_velocity_commands(control), count=100),
     }
 
