@@ -406,11 +406,14 @@ class Input:
     type : type
         For a layer `OccupancyGrid`, `LaserScanData` or `CloudData`; for a costmap filter `FilterInfo` or `FilterMask`.
         For a behaviour `numpy.ndarray`, for a velocity
-        (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`, for an empty message, as for a task at a waypoint.
+        (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`, for an empty message, as for a task at a waypoint. For such a
+        task also `numpy.ndarray`, for an image.
     take : callable
         Called with a map; or with a scan or cloud, the base pose at its time in the costmap's frame, and that time
-        [s]; or with a velocity and the time [s]; or with nothing. Called with the information about a filter's mask it
-        returns the input of that mask, or None where the filter cannot use it.
+        [s]; or with a velocity and the time [s]; or with nothing; or with a function that returns an image's pixels,
+        shape (height, width) or (height, width, 3) for RGB, and raises `TaskFailed` where they cannot be read. Called
+        with the information about a filter's mask it returns the input of that mask, or None where the filter cannot
+        use it.
     """
 
     topic: str

@@ -45,6 +45,10 @@ class Costmaps(Tasks):
         name = "local_costmap/clear_around_local_costmap"
         self._call(ClearCostmapAroundRobot, name, reset_distance=float(reset_distance))
 
+    def clearCostmapAroundPose(self, pose: PoseStamped, reset_distance: float) -> None:
+        """Clear the local costmap within a distance [m] of a pose, by the method's name in ROS 2 Jazzy."""
+        self.clearLocalCostmapAroundPose(pose, reset_distance)
+
     def clearLocalCostmapAroundPose(self, pose: PoseStamped, reset_distance: float) -> None:
         """Clear the local costmap within a distance [m] of a pose."""
         name = "local_costmap/clear_around_pose_local_costmap"

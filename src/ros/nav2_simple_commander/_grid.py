@@ -87,10 +87,16 @@ class Grid:
             self.origin_y + (my + 0.5) * self.resolution,
         )
 
+    def worldToMap(self, wx: float, wy: float) -> tuple[int, int]:
+        """Return the column and the row of a place [m], also where it is outside."""
+        return (
+            int(np.floor((wx - self.origin_x) / self.resolution)),
+            int(np.floor((wy - self.origin_y) / self.resolution)),
+        )
+
     def worldToMapValidated(self, wx: float, wy: float) -> tuple[int, int] | tuple[None, None]:
         """Return the column and the row of a place [m]; (None, None) where it is outside."""
-        mx = int(np.floor((wx - self.origin_x) / self.resolution))
-        my = int(np.floor((wy - self.origin_y) / self.resolution))
+        mx, my = self.worldToMap(wx, wy)
         if 0 <= mx < self.size_x and 0 <= my < self.size_y:
             return mx, my
         return None, None

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
-from nav2_msgs.action import FollowWaypoints, NavigateToPose
+from cv_bridge import CvBridge
+from geographic_msgs.msg import GeoPose
+from geometry_msgs.msg import Point
+from nav2_msgs.action import FollowGPSWaypoints, FollowWaypoints, NavigateToPose
+from PIL import Image as pillow
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.task import Future
+from robot_localization.srv import FromLL
 from std_msgs.msg import Empty
 
 from daidalos.nodes.conversions import pose_stamped
@@ -139,3 +147,68 @@ def test_an_input_is_waited_for(stage: Callable[[dict[str, Any]], Stage], answer
         if answers
         else (GoalStatus.STATUS_ABORTED, Result.TASK_EXECUTOR_FAILED)
     )
+
+
+@pytest.mark.parametrize(("encoding", "mode"), [("rgb8", "RGB"), ("bgr8", "RGB"), ("mono8", "L")])
+def test_a_photo_is_saved(stage: Callable[[dict[str, Any]], Stage], tmp_path: Path, encoding: str, mode: str) -> None:
+    folder = tmp_path / "new" / "photos"
+    task = {"plugin": "nav2_waypoint_follower::PhotoAtWaypoint", "image_topic": "/camera", "save_dir": str(folder)}
+    bench = Bench(stage({"/waypoint_follower": {"waypoint_task_executor_plugin": "photo", "photo": task}}))
+    pixels = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
+    pixels = pixels[..., 0] if mode == "L" else pixels
+    bench.stage.publish("/camera", CvBridge().cv2_to_imgmsg(np.ascontiguousarray(pixels), encoding))
+    bench.stage.step()
+    assert bench.follow(1.0, 2.0)[0] == GoalStatus.STATUS_SUCCEEDED
+    first, second = sorted(folder.iterdir())
+    assert first.name.startswith("0_1")
+    assert (second.name[:2], second.suffix) == ("1_", ".png")
+    with pillow.open(first) as image:
+        assert image.mode == mode
+        assert np.array_equal(np.asarray(image), pixels[..., ::-1] if encoding == "bgr8" else pixels)
+
+
+def test_without_an_image_the_task_fails(stage: Callable[[dict[str, Any]], Stage], tmp_path: Path) -> None:
+    task = {"plugin": "nav2_waypoint_follower::PhotoAtWaypoint", "save_dir": str(tmp_path)}
+    bench = Bench(stage({"/waypoint_follower": {"waypoint_task_executor_plugin": "photo", "photo": task}}))
+    status, result = bench.follow(1.0)
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Result.TASK_EXECUTOR_FAILED)
+
+
+def _places(*latitudes: float) -> list[GeoPose]:
+    places = [GeoPose() for _ in latitudes]
+    for place, latitude in zip(places, latitudes, strict=True):
+        place.position.latitude = latitude
+    return places
+
+
+def test_places_on_the_earth_are_visited(bench: Bench) -> None:
+    def convert(request: Any, response: Any) -> Any:
+        response.map_point = Point(x=request.ll_point.latitude - 45.0)
+        return response
+
+    bench.stage.node.create_service(FromLL, "/fromLL", convert)
+    feedback: list[int] = []
+    handle = bench.stage.send(
+        FollowGPSWaypoints, "follow_gps_waypoints",
+        lambda message: feedback.append(message.feedback.current_waypoint), gps_poses=_places(46.0, 47.0, 44.0),
+    )  # fmt: skip
+    status, result = bench.stage.end(handle)
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    assert bench.navigator.reached == [1.0, 2.0]
+    assert feedback == [0, 1, 2]
+    assert [(one.index, one.error_code, one.goal.header.frame_id) for one in result.missed_waypoints] == [
+        (2, 9001, "map")
+    ]
+
+
+@pytest.mark.parametrize(("is_served", "words"), [(False, "/fromLL is not served"), (True, "knows no place")])
+def test_places_that_cannot_be_converted_abort_the_goal(bench: Bench, is_served: bool, words: str) -> None:
+    if is_served:
+        bench.stage.node.create_service(
+            FromLL, "/fromLL", lambda request, response: FromLL.Response(map_point=Point(x=math.nan))
+        )
+        bench.stage.step_for(0.5)
+    handle = bench.stage.send(FollowGPSWaypoints, "follow_gps_waypoints", gps_poses=_places(46.0))
+    status, result = bench.stage.end(handle)
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, FollowGPSWaypoints.Result.UNKNOWN)
+    assert words in result.error_msg

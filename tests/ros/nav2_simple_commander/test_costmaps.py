@@ -43,6 +43,8 @@ def test_a_costmap_by_cells_and_metres():
     assert grid.worldToMapValidated(-0.25, 2.25) == (3, 2)
     assert grid.worldToMapValidated(-2.01, 2.0) == (None, None)
     assert grid.worldToMapValidated(0.0, 6.0) == (None, None)
+    assert grid.worldToMap(-0.25, 2.25) == (3, 2)
+    assert grid.worldToMap(-2.01, 6.0) == (-1, 10)
 
 
 def test_an_occupancy_grid():
