@@ -14,6 +14,10 @@ ARGUMENTS = [
     ("slam", "False", "whether the map is made while driving"),
     ("map", "", "map file, without SLAM"),
     ("graph", "", "file of the graph of routes; starts the route server"),
+    ("keepout_mask", "", "map file of the keepout filter's mask; starts its servers"),
+    ("speed_mask", "", "map file of the speed filter's mask; starts its servers"),
+    ("use_keepout_zones", "True", "what KEEPOUT_ZONE_ENABLED in the parameter file stands for"),
+    ("use_speed_zones", "True", "what SPEED_ZONE_ENABLED in the parameter file stands for"),
     ("use_localization", "True", "whether map and localization are started"),
     ("use_sim_time", "false", "whether the simulator's clock is used"),
     ("autostart", "true", "whether the nodes are activated at once"),
@@ -36,8 +40,13 @@ def included(name, condition, **arguments):
 def generate_launch_description():
     value = LaunchConfiguration
     default = PathJoinSubstitution([FindPackageShare("nav2_bringup"), "params", "nav2_params.yaml"])
+    zones = {"KEEPOUT_ZONE_ENABLED": value("use_keepout_zones"), "SPEED_ZONE_ENABLED": value("use_speed_zones")}
     file = RewrittenYaml(
-        source_file=value("params_file"), root_key=value("namespace"), param_rewrites={}, convert_types=True
+        source_file=value("params_file"),
+        root_key=value("namespace"),
+        param_rewrites={},
+        value_rewrites=zones,
+        convert_types=True,
     )
     composed = {"use_composition": value("use_composition"), "container_name": "nav2_container"}
     localized = ["not ", value("slam"), " and ", value("use_localization")]
@@ -65,7 +74,24 @@ def generate_launch_description():
                         map=value("map"),
                         **composed,
                     ),
-                    included("navigation_launch.py", None, graph=value("graph"), **composed),
+                    *(
+                        included(
+                            f"{kind}_zone_launch.py",
+                            IfCondition(PythonExpression(["'", mask, "' != '' and ", used])),
+                            **{f"{kind}_mask": mask, f"use_{kind}_zones": used},
+                            **composed,
+                        )
+                        for kind in ("keepout", "speed")
+                        for mask, used in [(value(f"{kind}_mask"), value(f"use_{kind}_zones"))]
+                    ),
+                    included(
+                        "navigation_launch.py",
+                        None,
+                        graph=value("graph"),
+                        use_keepout_zones=value("use_keepout_zones"),
+                        use_speed_zones=value("use_speed_zones"),
+                        **composed,
+                    ),
                 ]
             ),
         ]
