@@ -145,17 +145,29 @@ def test_a_launch_gives_the_same_bag_every_time(tmp_path: Path) -> None:
     assert digests[0] == digests[1]
 
 
-def test_a_foreign_program_is_refused_by_name(tmp_path: Path) -> None:
+def test_programs_that_cannot_be_started_are_named_and_the_others_run(tmp_path: Path) -> None:
+    script(
+        tmp_path, "import sys\nsys.excepthook = lambda *error: 1 / 0\nraise ValueError('the first fault')\n", "hook.py"
+    )
+    script(tmp_path, "import time; time.sleep(2); print('done')", "whole.py")
     launch = script(
         tmp_path,
         "from launch import LaunchDescription\n"
         "from launch.actions import ExecuteProcess\n"
+        "COMMANDS = ['sleep', '1'], ['python3', 'missing.py'], ['python3', 'hook.py'], ['python3', 'whole.py']\n"
         "def generate_launch_description():\n"
-        "    return LaunchDescription([ExecuteProcess(cmd=['sleep', '1'])])\n",
-        "foreign.launch.py",
+        "    return LaunchDescription([ExecuteProcess(cmd=cmd, output='screen') for cmd in COMMANDS])\n",
+        "mistakes.launch.py",
     )
     result = run("ros2", "launch", launch, folder=tmp_path)
-    assert "in lock-step only programs of this Python run, cmd 'sleep 1'" in result.stdout + result.stderr
+    output = result.stdout + result.stderr
+    assert "in lock-step only programs of this Python run, cmd 'sleep 1'" in output
+    assert f"can't open file '{tmp_path / 'missing.py'}': [Errno 2] No such file or directory" in output
+    assert "exit code 2, cmd 'python3 missing.py'" in output
+    assert "Error in sys.excepthook" in output
+    assert "ValueError: the first fault" in output
+    assert "exit code 1, cmd 'python3 hook.py'" in output
+    assert "] done" in output
     assert run("sleep", "1", folder=tmp_path).returncode == 1
 
 

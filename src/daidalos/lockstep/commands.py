@@ -48,7 +48,19 @@ def _python(arguments: Sequence[str]) -> tuple[list[str], Callable[[], Any]] | N
     if rest[0] == "-m":
         name = rest[1]
         return [name, *rest[2:]], lambda: runpy.run_module(name, run_name="__main__", alter_sys=False) and 0
-    return _script(rest[0], rest[1:])
+    argv, body = _script(rest[0], rest[1:])
+    return argv, lambda: body() if _can_open(argv[0]) else 2
+
+
+def _can_open(path: str) -> bool:
+    """Return whether a script can be read; report it as the interpreter does where not."""
+    try:
+        with open(path, "rb"):
+            return True
+    except OSError as error:
+        place = os.path.abspath(path)
+        sys.stderr.write(f"{sys.executable}: can't open file '{place}': [Errno {error.errno}] {error.strerror}\n")
+        return False
 
 
 def _script(path: str, arguments: Sequence[str]) -> tuple[list[str], Callable[[], Any]]:

@@ -13,6 +13,7 @@ import os
 import signal
 import sys
 import threading
+import traceback
 from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 from typing import Any, ClassVar
@@ -174,12 +175,12 @@ class Program(Owner):
         except SystemExit as ended:
             status = _exit_status(ended.code)
         except KeyboardInterrupt:
-            sys.excepthook(*sys.exc_info())
+            _report_error()
             status = -signal.SIGINT
         except Terminated as ended:
             status = -ended.number
         except Exception:
-            sys.excepthook(*sys.exc_info())
+            _report_error()
             status = 1
         with contextlib.suppress(BaseException):
             self._wait_for_threads()
@@ -302,6 +303,15 @@ def _stream(on_output: Callable[[int, bytes], object], fd: int) -> io.TextIOWrap
     raw = _Output(lambda data: on_output(fd, data))
     buffered = io.BufferedWriter(raw)
     return io.TextIOWrapper(buffered, encoding="utf-8", errors="backslashreplace", line_buffering=True)
+
+
+def _report_error() -> None:
+    """Pass the exception that is handled to the program's `sys.excepthook`, and report what that raises itself."""
+    try:
+        sys.excepthook(*sys.exc_info())
+    except Exception:
+        sys.stderr.write("Error in sys.excepthook:\n")
+        traceback.print_exc()
 
 
 def _exit_status(code: Any) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import traceback
 from argparse import ArgumentParser
 from collections.abc import Sequence
 
@@ -64,6 +65,9 @@ def main() -> None:
         status = exit_status(run, program)
     except LockstepError as error:
         sys.stderr.write(f"[lockstep] {error}\n")
+        status = 1
+    except Exception:  # the interpreter would wait for threads that run no more
+        traceback.print_exc()
         status = 1
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
