@@ -3,7 +3,13 @@
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription
 from launch.conditions import IfCondition
-from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
+from launch.substitutions import (
+    AndSubstitution,
+    LaunchConfiguration,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    PathJoinSubstitution,
+)
 from launch_ros.actions import Node
 from launch_ros.descriptions import ParameterFile
 from launch_ros.substitutions import FindPackageShare
@@ -49,7 +55,7 @@ def generate_launch_description():
         convert_types=True,
     )
     composed = {"use_composition": value("use_composition"), "container_name": "nav2_container"}
-    localized = ["not ", value("slam"), " and ", value("use_localization")]
+    localized = AndSubstitution(NotSubstitution(value("slam")), value("use_localization"))
     return LaunchDescription(
         [
             *(DeclareLaunchArgument(name, default_value=text, description=what) for name, text, what in ARGUMENTS),
@@ -70,14 +76,14 @@ def generate_launch_description():
                     included("slam_launch.py", IfCondition(value("slam"))),
                     included(
                         "localization_launch.py",
-                        IfCondition(PythonExpression(localized)),
+                        IfCondition(localized),
                         map=value("map"),
                         **composed,
                     ),
                     *(
                         included(
                             f"{kind}_zone_launch.py",
-                            IfCondition(PythonExpression(["'", mask, "' != '' and ", used])),
+                            IfCondition(AndSubstitution(NotEqualsSubstitution(mask, ""), used)),
                             **{f"{kind}_mask": mask, f"use_{kind}_zones": used},
                             **composed,
                         )
