@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from daidalos.common.arrays import Array
@@ -180,8 +179,7 @@ class SimulatedRobot:
         """Whether it touches anything but the ground."""
         physics = self.simulation.physics
         if self._kinematic:
-            physics.refresh_positions()
-            mujoco.mj_collision(physics.model, physics.data)
+            physics.refresh_contacts()
         contact = physics.data.contact
         first, second = contact.geom.T
         here = (self._mine[first] & self._solid[second]) | (self._mine[second] & self._solid[first])

@@ -132,6 +132,13 @@ class Physics:
             mujoco.mj_comPos(self.model, self.data)
             self._positions_fresh = True
 
+    def refresh_contacts(self) -> None:
+        """Update the poses of bodies and geoms, and the contacts without their forces."""
+        self.refresh_positions()
+        if self._scenery is not None:
+            self._scenery.update(self.data)
+        mujoco.mj_collision(self.model, self.data)
+
     def refresh_velocities(self) -> None:
         """Update the poses and velocities of bodies."""
         if not self._velocities_fresh:
