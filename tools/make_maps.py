@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -57,11 +58,11 @@ def map_of(world: Path, side: float, inside: tuple[float, float]) -> OccupancyGr
     return OccupancyGrid(data, RESOLUTION, (low, low, 0.0))
 
 
-def _height(physics: object, x: float, y: float) -> float:
+def _height(physics: Any, x: float, y: float) -> float:
     """Return the height [m] of what lies under a position."""
     start = np.array([x, y, 10.0])
     hit = np.zeros(1, dtype=np.int32)
-    length = mujoco.mj_ray(physics.model, physics.data, start, np.array([0.0, 0.0, -1.0]), None, 1, -1, hit)  # type: ignore[attr-defined]
+    length = mujoco.mj_ray(physics.model, physics.data, start, np.array([0.0, 0.0, -1.0]), None, 1, -1, hit)
     return 10.0 - float(length) if length >= 0.0 else 0.0
 
 

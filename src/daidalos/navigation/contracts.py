@@ -405,9 +405,8 @@ class Input:
         Its topic; empty for the costmap's own ``map_topic``.
     type : type
         For a layer `OccupancyGrid`, `LaserScanData` or `CloudData`; for a costmap filter `FilterInfo` or `FilterMask`.
-        For a behaviour `numpy.ndarray`, for a velocity
-        (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`, for an empty message, as for a task at a waypoint. For such a
-        task also `numpy.ndarray`, for an image.
+        For a behaviour `numpy.ndarray`, for a velocity (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`, for an empty
+        message, as for a task at a waypoint. For such a task also `numpy.ndarray`, for an image.
     take : callable
         Called with a map; or with a scan or cloud, the base pose at its time in the costmap's frame, and that time
         [s]; or with a velocity and the time [s]; or with nothing; or with a function that returns an image's pixels,
