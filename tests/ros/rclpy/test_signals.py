@@ -181,15 +181,45 @@ def test_handlers_of_others_are_seen_to_run_for_a_while(raised: list[int]) -> No
 
 @pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals between threads are POSIX's")
 def test_a_signal_that_was_handled_is_not_sent_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(signal_watch, "_TIMEOUT_S", 0.05)
+    monkeypatch.setattr(signal_watch, "_TIMEOUT_S", 0.2)
     handled: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, frame: handled.append(number))
     try:
         with signal_watch.watching(signal.SIGINT):
-            for pause in (0.0, 0.01, 0.03, 0.05, 0.07, 0.2):
+            for pause in (0.0, 0.04, 0.12, 0.2, 0.28, 0.6):
                 signal.raise_signal(signal.SIGINT)
                 time.sleep(pause)  # in different phases of the watching thread
         assert len(handled) == 6
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals between threads are POSIX's")
+def test_a_signal_that_comes_while_the_pipe_is_read_is_not_sent_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    take = signal_watch._take
+    handled: list[int] = []
+    raised_by_main = threading.Event()
+    taking = threading.Event()
+
+    def take_late(reader: int) -> bytes | None:
+        if threading.current_thread() is threading.main_thread():
+            return b""  # the watching thread reads the number before the handler can
+        if handled and not taking.is_set():
+            taking.set()
+            raised_by_main.wait(5.0)
+        return take(reader)
+
+    monkeypatch.setattr(signal_watch, "_TIMEOUT_S", 0.2)
+    monkeypatch.setattr(signal_watch, "_take", take_late)
+    before = signal.signal(signal.SIGINT, lambda number, frame: handled.append(number))
+    try:
+        with signal_watch.watching(signal.SIGINT):
+            signal.raise_signal(signal.SIGINT)
+            assert taking.wait(5.0)
+            signal.raise_signal(signal.SIGINT)
+            raised_by_main.set()
+            time.sleep(0.1)
+        assert handled == [signal.SIGINT] * 2
     finally:
         signal.signal(signal.SIGINT, before)
 

@@ -15,7 +15,7 @@ import threading
 import time
 import weakref
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
@@ -94,16 +94,16 @@ def _watch(reader: int) -> None:
     poll.register(reader, select.POLLIN)
     resent = -1  # the number of runs there had been when a signal was sent again
     while True:
-        poll.poll()
         before = _runs
+        poll.poll()
         time.sleep(_TIMEOUT_S)
-        if _runs != before:
-            continue  # what is in the pipe now came later, and has its own time
         numbers = _take(reader)
         if numbers is None:
             break
-        if numbers and _runs != resent and main.ident is not None and signal.getsignal(numbers[-1]) in _watched:
-            resent = _runs
+        if _runs != before:
+            _put_back(numbers)  # they may have come since then: they have their own time
+        elif numbers and before != resent and main.ident is not None and signal.getsignal(numbers[-1]) in _watched:
+            resent = before
             signal.pthread_kill(main.ident, numbers[-1])
     os.close(reader)
 
@@ -114,6 +114,13 @@ def _take(reader: int) -> bytes | None:
         return os.read(reader, 64) or None
     except BlockingIOError:
         return b""
+
+
+def _put_back(numbers: bytes) -> None:
+    """Write numbers into the pipe again, unless it was closed meanwhile."""
+    if numbers and _writer is not None:
+        with suppress(OSError):
+            os.write(_writer, numbers)
 
 
 def _forget() -> None:
