@@ -44,7 +44,17 @@ class Reader:
                 self._press(block)
             else:
                 for command in block.commands:
-                    self._type(page, self._terminal(block.terminal), command, where)
+                    self._follow_command(page, block.terminal, command, where)
+
+    def _follow_command(self, page: pages.Page, number: int, command: pages.Command | None, where: str) -> None:
+        try:
+            self._type(page, self._terminal(number), command, where)
+        except AssertionError as error:
+            error.add_note("\n".join(["Before, this was not as the page says:", *self.mismatches]))
+            for other, terminal in self._terminals.items():
+                last = terminal.output().splitlines()[-_SHOWN_LINES:]
+                error.add_note("\n".join([f"--- terminal {other} ends with", *last]))
+            raise
 
     def close(self) -> None:
         """End all terminals."""

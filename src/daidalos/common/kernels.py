@@ -1,13 +1,13 @@
 """Numba kernels, cached on disk, and their compilation ahead of the first use.
 
 A kernel is a function over arrays under `compiled`. A package of kernels has a module `warming`, whose generator
-`steps` calls each of them with data of the types of real use, and yields the share done and the name of each next step.
+`steps` calls them with data of the types of real use, and yields the share done and the name of each next step.
 """
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, ParamSpec, TypeVar, overload
 
 P = ParamSpec("P")
@@ -48,12 +48,31 @@ def _compile(function: Callable[..., Any], fastmath: bool, inline: bool) -> Any:
 
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
     kernel = numba.njit(fastmath=fastmath, inline="always" if inline else "never", **options)(function)
+    _compile_in_one_process(kernel)
     KERNELS.append(kernel)
     return kernel
 
 
-def warm_up(package: str, progress: Progress = lambda share, step: None) -> None:
-    """Compile every kernel of a package, so that its first use is as fast as its second.
+def _compile_in_one_process(kernel: Any) -> None:
+    """Make processes that need the same machine code at the same time wait for the one that compiles it."""
+    from numba.core.compiler_lock import global_compiler_lock
+
+    from daidalos.common.kernel_cache import SharedCache
+
+    cache, compile_here = SharedCache(kernel.py_func), kernel.compile
+
+    def compile_once(signature: Any) -> Any:
+        with global_compiler_lock:  # the lock on the cache belongs to the thread that compiles
+            try:
+                return compile_here(signature)
+            finally:
+                cache.unlock()
+
+    kernel._cache, kernel.compile = cache, compile_once
+
+
+def warm_up(package: str, progress: Progress = lambda share, step: None, users: Iterable[type] | None = None) -> None:
+    """Compile the kernels of a package, so that their first use is as fast as their second.
 
     Takes a while at the first call on a machine, and a moment afterwards, when the machine code is on disk.
 
@@ -63,7 +82,10 @@ def warm_up(package: str, progress: Progress = lambda share, step: None) -> None
         As it is imported, such as "daidalos.mapping".
     progress : callable
         Called with the share done, from 0 to 1, and what comes next.
+    users
+        The classes whose kernels are needed, in packages whose kernels belong to plugins; all kernels where None.
     """
-    for share, step in importlib.import_module(f"{package}.warming").steps():
+    steps = importlib.import_module(f"{package}.warming").steps
+    for share, step in steps() if users is None else steps(tuple(users)):
         progress(share, step)
     progress(1.0, "ready")

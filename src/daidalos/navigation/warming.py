@@ -1,6 +1,6 @@
-"""Compilation of every kernel of navigation ahead of its first use."""
+"""Compilation of the kernels of navigation ahead of their first use, those of each plugin by themselves."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator
 
 import numpy as np
 
@@ -28,16 +28,25 @@ from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 from daidalos.navigation.smoothers.simple_smoother import SimpleSmoother
 
 OUTLINE = Footprint.of_corners(np.array([[0.2, 0.2], [0.2, -0.2], [-0.2, -0.2], [-0.2, 0.2]]))
+POSE, GOAL = np.array([1.0, 2.0, 0.0]), np.array([3.0, 2.0, 0.0])
+WALLED = np.array([1.0, 0.18, 0.0])
+SCAN = LaserScanData(np.array([1.0, np.inf, 1.0]), 0.0, 0.1, 0.1, 10.0)
 
 
-def steps() -> Iterator[tuple[float, str]]:
-    """Call every kernel with data of the types of a real robot; see `daidalos.common.kernels.warm_up`."""
+def steps(users: Collection[type] | None = None) -> Iterator[tuple[float, str]]:
+    """Call kernels with data of the types of a real robot; see `daidalos.common.kernels.warm_up`.
+
+    Parameters
+    ----------
+    users
+        Classes of layers, planners, controllers and smoothers, whose kernels follow those of every costmap.
+    """
+    parts = [kind for kind in _PARTS if users is None or any(issubclass(user, kind) for user in users)]
     yield 0.0, "costmap"
     costmap = _costmap()
-    yield 0.3, "planner"
-    _plan(costmap)
-    yield 0.6, "controller"
-    _control(costmap)
+    for done, kind in enumerate(parts, 1):
+        yield done / (1 + len(parts)), kind.__name__
+        _PARTS[kind](costmap)
 
 
 def _costmap() -> Costmap:
@@ -46,37 +55,36 @@ def _costmap() -> Costmap:
     data[0] = 100
     static, obstacles = StaticLayer(), ObstacleLayer(None, NavigationContext(footprint=OUTLINE))
     static.set_map(OccupancyGrid(data, 0.05, (0.0, 0.0, 0.0)))
-    scan = LaserScanData(np.array([1.0, np.inf, 1.0]), 0.0, 0.1, 0.1, 10.0)
-    pose = np.array([1.0, 2.0, 0.0])
-    obstacles.add_observation(Observation.from_scan(scan, pose, 0.0))
-    voxels = VoxelLayer(None, NavigationContext(footprint=OUTLINE))
-    voxels.add_observation(Observation.from_scan(scan, pose, 0.0))
-    layered = LayeredCostmap(
-        CostmapParameters(),
-        [static, obstacles, voxels, InflationLayer(None, NavigationContext(footprint=Footprint.circle(0.2)))],
-    )
-    layered.update(pose, 0.0)
+    obstacles.add_observation(Observation.from_scan(SCAN, POSE, 0.0))
+    layers = [static, obstacles, InflationLayer(None, NavigationContext(footprint=Footprint.circle(0.2)))]
+    layered = LayeredCostmap(CostmapParameters(), layers)
+    layered.update(POSE, 0.0)
+    FootprintCollisionChecker(layered.costmap, OUTLINE).in_collision(POSE)
     return layered.costmap
 
 
-def _plan(costmap: Costmap) -> None:
-    start, goal, walled = (np.array([x, y, 0.0]) for x, y in ((1.0, 2.0), (3.0, 2.0), (1.0, 0.18)))
+def _mark_voxels(costmap: Costmap) -> None:
+    voxels = VoxelLayer(None, NavigationContext(footprint=OUTLINE))
+    voxels.add_observation(Observation.from_scan(SCAN, POSE, 0.0))
+    LayeredCostmap(CostmapParameters(), [voxels]).update(POSE, 0.0)
+
+
+def _plan_around(costmap: Costmap) -> None:
+    """Plan with NavFn, also from and to a place within an obstacle."""
     planner = NavfnPlanner()
-    path = planner.create_plan(costmap, start, goal)
-    planner.create_plan(costmap, walled, goal)
-    planner.create_plan(costmap, start, walled)
-    SimpleSmoother().smooth(path, costmap)
-    for kind in (ThetaStarPlanner, SmacPlanner2D):
-        kind().create_plan(costmap, start, goal)
+    for start, goal in ((POSE, GOAL), (WALLED, GOAL), (POSE, WALLED)):
+        planner.create_plan(costmap, start, goal)
+
+
+def _plan_with_curves(costmap: Costmap) -> None:
     for model in ("DUBIN", "REEDS_SHEPP"):
         driven = SmacPlannerHybridParameters(motion_model_for_search=model, lookup_table_size=1.0)
-        SmacPlannerHybrid(driven, NavigationContext(footprint=OUTLINE)).create_plan(costmap, start, goal)
+        planner = SmacPlannerHybrid(driven, NavigationContext(footprint=OUTLINE))
+        planner.create_plan(costmap, POSE, GOAL)
 
 
-def _control(costmap: Costmap) -> None:
-    """Run a controller with each of its critics to a far goal and to a near one."""
-    pose, rest = np.array([1.0, 2.0, 0.0]), np.zeros(3)
-    path = np.stack([np.linspace(1.0, 3.0, 41), np.full(41, 2.0), np.zeros(41)], axis=-1)
+def _follow_with_mppi(costmap: Costmap) -> None:
+    """Run the controller with each of its critics to a far goal and to a near one."""
     outline = CostCritic(CostCriticParameters(consider_footprint=True))
     controller = MppiController(
         MppiParameters(batch_size=20),
@@ -84,14 +92,40 @@ def _control(costmap: Costmap) -> None:
         critics=(outline, ObstaclesCritic(), PathAlignLegacyCritic(), *MppiController().critics),
     )
     for distance in (2.0, 0.7):
-        control = ControlInput(pose, rest, path, path[-1], distance, costmap)
-        controller.compute_velocity_commands(control)
-    FootprintCollisionChecker(costmap, OUTLINE).in_collision(pose)
+        controller.compute_velocity_commands(_along_path(costmap, distance))
+
+
+def _follow_with_dwb(costmap: Costmap) -> None:
     limits = DwbParameters(
         max_vel_x=0.3, max_speed_xy=0.3, max_vel_theta=1.0, acc_lim_x=2.5, acc_lim_theta=3.0, vx_samples=2,
         vtheta_samples=3, critics=("BaseObstacle", "ObstacleFootprint", "PathDist")
     )  # fmt: skip
-    sampling = DwbController(limits, NavigationContext(footprint=OUTLINE))
-    beside = ControlInput(pose, rest, path, path[-1], 2.0, costmap)
-    sampling.compute_velocity_commands(beside)
-    TebController(None, NavigationContext(footprint=OUTLINE)).compute_velocity_commands(beside)
+    DwbController(limits, NavigationContext(footprint=OUTLINE)).compute_velocity_commands(_along_path(costmap))
+
+
+def _follow_with_teb(costmap: Costmap) -> None:
+    controller = TebController(None, NavigationContext(footprint=OUTLINE))
+    controller.compute_velocity_commands(_along_path(costmap))
+
+
+def _along_path(costmap: Costmap, distance: float = 2.0) -> ControlInput:
+    path = np.stack([np.linspace(1.0, 3.0, 41), np.full(41, 2.0), np.zeros(41)], axis=-1)
+    return ControlInput(POSE, np.zeros(3), path, path[-1], distance, costmap)
+
+
+def _smooth(costmap: Costmap) -> None:
+    SimpleSmoother().smooth(_along_path(costmap).path, costmap)
+
+
+_PARTS: dict[type, Callable[[Costmap], object]] = {
+    VoxelLayer: _mark_voxels,
+    NavfnPlanner: _plan_around,
+    ThetaStarPlanner: lambda costmap: ThetaStarPlanner().create_plan(costmap, POSE, GOAL),
+    SmacPlanner2D: lambda costmap: SmacPlanner2D().create_plan(costmap, POSE, GOAL),
+    SmacPlannerHybrid: _plan_with_curves,
+    MppiController: _follow_with_mppi,
+    DwbController: _follow_with_dwb,
+    TebController: _follow_with_teb,
+    SimpleSmoother: _smooth,
+}
+"""What calls the kernels of each plugin, in a costmap of 4 m by 4 m."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Iterable
 
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.task import Future
@@ -14,11 +15,11 @@ _NOTICE_AFTER_S = 3.0
 """Time after which progress is logged [s]; kernels from the cache on disk are ready sooner."""
 
 _lock = threading.Lock()
-_compiled: dict[str, Future] = {}
+_compiled: dict[tuple[str, frozenset[type] | None], Future] = {}
 
 
-def warm_up_in_background(package: str, logger: RcutilsLogger) -> Future:
-    """Compile the kernels of a package in a thread, once per process; the future is done when they are compiled.
+def warm_up_in_background(package: str, logger: RcutilsLogger, users: Iterable[type] | None = None) -> Future:
+    """Compile kernels of a package in a thread, once per process; the future is done when they are compiled.
 
     Parameters
     ----------
@@ -26,21 +27,24 @@ def warm_up_in_background(package: str, logger: RcutilsLogger) -> Future:
         As for `daidalos.common.kernels.warm_up`.
     logger
         Logs the progress when compilation takes longer than `_NOTICE_AFTER_S`.
+    users
+        As for `daidalos.common.kernels.warm_up`.
     """
+    asked = package, None if users is None else frozenset(users)
     with _lock:
-        if package not in _compiled:
-            compiled = _compiled[package] = Future()
-            threading.Thread(target=_compile, args=(package, logger, compiled), name="compiler", daemon=True).start()
-        return _compiled[package]
+        if asked not in _compiled:
+            compiled = _compiled[asked] = Future()
+            threading.Thread(target=_compile, args=(*asked, logger, compiled), name="compiler", daemon=True).start()
+        return _compiled[asked]
 
 
-def _compile(package: str, logger: RcutilsLogger, compiled: Future) -> None:
+def _compile(package: str, users: frozenset[type] | None, logger: RcutilsLogger, compiled: Future) -> None:
     start = time.monotonic()
     logged_tenth = -1
 
     def progress(share: float, step: str) -> None:
         nonlocal logged_tenth
-        if time.monotonic() - start < _NOTICE_AFTER_S or int(10 * share) == logged_tenth:
+        if share == 1.0 or time.monotonic() - start < _NOTICE_AFTER_S or int(10 * share) == logged_tenth:
             return
         if logged_tenth < 0:
             logger.info("preparing the algorithms; the first start on a machine compiles them")
@@ -48,7 +52,7 @@ def _compile(package: str, logger: RcutilsLogger, compiled: Future) -> None:
         logger.info(f"compiling: {100 * share:.0f} % ({step})")
 
     try:
-        warm_up(package, progress)
+        warm_up(package, progress, users)
     except Exception as error:
         compiled.set_exception(error)
         return

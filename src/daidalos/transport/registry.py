@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from daidalos.common.file_locks import lock_file
 from daidalos.transport.environment import EnvironmentVariableError
 
 _SOCKET_NAME_LENGTH = 16
@@ -94,7 +95,7 @@ class Registry:
     def locked(self) -> Iterator[None]:
         """Lock the registry against other readers and writers while the context lasts."""
         with open_private(self.folder / "registry.lock") as file:
-            _lock(file, wait=True)
+            lock_file(file, wait=True)
             yield
 
     def peers(self) -> list[Peer]:
@@ -128,7 +129,7 @@ class Registry:
     def register(self, peer: Peer) -> None:
         """Register this session until this process ends or `unregister` is called."""
         self._entry = open_private(self.folder / f"{peer.session}.alive")
-        _lock(self._entry, wait=False)
+        lock_file(self._entry, wait=False)
         self._data = self.folder / f"{peer.session}.json"
         with open_private(self._data) as file:
             file.write(json.dumps(peer.endpoints).encode())
@@ -154,20 +155,7 @@ def _is_free(path: Path) -> bool:
     """Return whether no process holds the lock on a file."""
     with path.open("ab") as file:
         try:
-            _lock(file, wait=False)
+            lock_file(file, wait=False)
         except OSError:
             return False
     return True
-
-
-def _lock(file: IO[bytes], *, wait: bool) -> None:
-    """Lock a file until it is closed; without `wait`, raise OSError if another process holds the lock."""
-    if sys.platform == "win32":
-        import msvcrt
-
-        file.seek(0)
-        msvcrt.locking(file.fileno(), msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
-    else:
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))

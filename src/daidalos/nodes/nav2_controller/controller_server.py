@@ -20,6 +20,7 @@ from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode, CostmapOutdated
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare, declare_without_effect
+from daidalos.nodes.warming import warm_up_in_background
 
 
 class UnknownController(NavigationError):
@@ -125,6 +126,8 @@ class ControllerServer(ManagedNode):
             if kind is PROGRESS_CHECKERS and self._settings.progress_checker_plugin:
                 names = (self._settings.progress_checker_plugin,)
             self._plugins[group] = {name: maker.make(kind, name, default) for name in names}
+        controllers = map(type, self._plugins["controller_plugins"].values())
+        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), controllers)
         self._command = self.create_publisher(
             TwistStamped if self._settings.enable_stamped_cmd_vel else Twist, "cmd_vel", 1
         )
@@ -160,6 +163,7 @@ class ControllerServer(ManagedNode):
         self._current = goal_handle
         self._waiting_since = None
         try:
+            await self._compiled
             await self._costmap.until_current(self, self._settings.costmap_update_timeout)
             if self._goes_on(goal_handle):
                 self._pursuit = self._take_up(goal_handle.request)

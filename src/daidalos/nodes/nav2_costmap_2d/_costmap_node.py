@@ -13,6 +13,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
+from rclpy.task import Future
 from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
 
@@ -154,7 +155,7 @@ class CostmapNode(ManagedNode):
         self.buffer = BlockingBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
         self._sensor_poses = SensorPoses(self.buffer, self.base_frame, self.get_logger())
-        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
+        self._compiled = Future()
         self._timers: list[Any] = []
 
     def _reconfigure(self, parameters: CostmapNodeParameters) -> None:
@@ -168,6 +169,7 @@ class CostmapNode(ManagedNode):
         for name in self._settings.filters:
             serve_toggle(self, name)
         self.layered = LayeredCostmap(self._settings, layers)
+        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), map(type, layers))
         self._publishers = [output_publisher(self, layer, one) for layer in layers for one in layer.outputs]
         self._interface = CostmapInterface(self)
 

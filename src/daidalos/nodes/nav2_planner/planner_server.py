@@ -25,6 +25,7 @@ from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
+from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import time_message
 
 
@@ -75,6 +76,8 @@ class PlannerServer(ManagedNode):
         from nav_msgs.msg import Path
 
         self._planners = {name: self._make_planner(name) for name in self._settings.planner_plugins}
+        kinds = map(type, self._planners.values())
+        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), kinds)
         self._plan_publisher = self.create_publisher(Path, "plan", 1)
         self.serve_action(ComputePathToPose, "compute_path_to_pose", partial(self._compute_path, ComputePathToPose))
         self.serve_action(
@@ -88,6 +91,7 @@ class PlannerServer(ManagedNode):
 
     async def _compute_path(self, action: Any, goal_handle: Any) -> Any:
         result = action.Result()
+        await self._compiled
         begun = time.monotonic_ns()
         await self._costmap.until_current(self, self._settings.costmap_update_timeout)
         if not goal_handle.is_active:

@@ -70,7 +70,6 @@ class SmootherServer(ManagedNode):
         self._settings = declare(self, SmootherServerParameters, reconfigure=self._reconfigure)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
-        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
         self._smoothers: dict[str, Smoother] = {}
 
     def _reconfigure(self, parameters: SmootherServerParameters) -> None:
@@ -91,6 +90,8 @@ class SmootherServer(ManagedNode):
         self._smoothers = {
             name: maker.make(SMOOTHERS, name, _DEFAULT_PLUGINS.get(name, "")) for name in p.smoother_plugins
         }
+        kinds = map(type, self._smoothers.values())
+        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), kinds)
         self._publisher = self.create_publisher(Path, "plan_smoothed", 1)
         self.serve_action(SmoothPath, "smooth_path", self._smooth_path)
 

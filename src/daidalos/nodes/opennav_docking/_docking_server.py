@@ -119,7 +119,7 @@ class DockingServer(ManagedNode):
         self._settings = declare(self, DockingServerParameters, reconfigure=self._reconfigure)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
-        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
+        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), ())
         self._drive: Drive | None = None
         self._current: Any = None
         self._docked_at = ""
