@@ -413,11 +413,14 @@ class Input:
         shape (height, width) or (height, width, 3) for RGB, and raises `TaskFailed` where they cannot be read. Called
         with the information about a filter's mask it returns the input of that mask, or None where the filter cannot
         use it.
+    latched : bool
+        Whether a map that was published before it is subscribed to is wanted (durability transient local).
     """
 
     topic: str
     type: type
     take: Callable[..., Input | None]
+    latched: bool = True
 
 
 @dataclass(frozen=True)

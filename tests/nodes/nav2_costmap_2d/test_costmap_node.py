@@ -272,3 +272,18 @@ def test_transforms_are_found_where_the_server_in_a_namespace_remaps_them(
     test.step_until(lambda: server._costmap.robot_pose() is not None)
     assert server._costmap.robot_pose()[0] == 2.0
     assert "/robot/scan" in {one.topic_name for one in server._costmap.subscriptions}
+
+
+@pytest.mark.parametrize("latched", [True, False])
+def test_a_map_is_taken_from_a_latched_topic_unless_the_layer_asks_for_new_ones_only(
+    stage: Callable[[dict[str, Any]], Stage], latched: bool, capfd: pytest.CaptureFixture[str]
+) -> None:
+    layer = {"map_subscribe_transient_local": latched}
+    test = stage({NODE: {**STATIC, "always_send_full_costmap": True, "static_layer": layer}})
+    server = test.add(PlannerServer())
+    assert server.trigger_configure() == TransitionCallbackReturn.SUCCESS
+    (listening,) = [one for one in server._costmap.subscriptions if one.topic_name == "/map"]
+    assert (listening.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL) == latched
+    told = capfd.readouterr().err
+    assert "without effect: always_send_full_costmap: the whole costmap is always published" in told
+    assert "not declared" not in told

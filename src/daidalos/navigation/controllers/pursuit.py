@@ -32,7 +32,7 @@ class PursuitParameters(Parameters):
     max_lookahead_dist: float = parameter(0.9, "Largest distance, where it depends on speed.", unit="m", above=0.0)
     lookahead_time: float = parameter(1.5, "Distance by speed.", unit="s", above=0.0)
     use_velocity_scaled_lookahead_dist: bool = parameter(True, "Whether the distance depends on speed.")
-    min_approach_linear_velocity: float = parameter(0.05, "Least speed on the approach.", unit="m/s", above=0.0)
+    min_approach_linear_velocity: float = parameter(0.05, "Least speed on the approach.", unit="m/s", minimum=0.0)
     approach_velocity_scaling_dist: float = parameter(
         0.6, "Distance to the goal at which the robot starts to slow down.", unit="m", minimum=0.0
     )

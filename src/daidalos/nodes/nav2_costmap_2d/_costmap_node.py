@@ -46,7 +46,7 @@ from daidalos.nodes.nav2_costmap_2d._costmap_filters import (
 from daidalos.nodes.nav2_costmap_2d._costmap_interface import CostmapInterface
 from daidalos.nodes.nav2_costmap_2d._transform_age import TransformAges
 from daidalos.nodes.navigation_extensions import ExtensionMaker
-from daidalos.nodes.parameters import declare
+from daidalos.nodes.parameters import declare, declare_without_effect
 from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 from daidalos.nodes.warming import warm_up_in_background
@@ -61,6 +61,7 @@ _DEFAULT_PLUGINS = {
     "obstacle_layer": "nav2_costmap_2d::ObstacleLayer",
     "inflation_layer": "nav2_costmap_2d::InflationLayer",
 }
+_WITHOUT_EFFECT = {"always_send_full_costmap": "the whole costmap is always published"}
 
 
 @dataclass(frozen=True)
@@ -165,6 +166,7 @@ class CostmapNode(ManagedNode):
 
     def configure(self) -> None:
         """Make the layers, the subscriptions that they need and the publishers."""
+        declare_without_effect(self, _WITHOUT_EFFECT)
         layers = [self._make_layer(name) for name in (*self._settings.plugins, *self._settings.filters)]
         for name in self._settings.filters:
             serve_toggle(self, name)
@@ -249,7 +251,8 @@ class CostmapNode(ManagedNode):
             with self.lock:
                 listened.take(grid)
 
-        self.create_subscription(GridMessage, listened.topic or self._settings.map_topic, take, LATCHED)
+        topic = listened.topic or self._settings.map_topic
+        self.create_subscription(GridMessage, topic, take, LATCHED if listened.latched else 1)
 
     def _listen_to_scans(self, listened: Input) -> None:
         from sensor_msgs.msg import LaserScan

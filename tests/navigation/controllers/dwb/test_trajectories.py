@@ -100,3 +100,11 @@ def test_commands_keep_to_the_limits_of_speed():
 def test_a_minimum_above_its_maximum_is_refused():
     with pytest.raises(ParameterError, match="is above max_vel_x"):
         GeneratorParameters(min_vel_x=0.5, max_vel_x=0.2)
+
+
+def test_no_samples_of_an_axis_are_its_two_ends_as_with_two() -> None:
+    found = [
+        generate(GeneratorParameters(**WAFFLE | {"vx_samples": count}), np.zeros(3), np.zeros(3), 0.05, 1.0).commands
+        for count in (0, 2)
+    ]
+    np.testing.assert_array_equal(*found)

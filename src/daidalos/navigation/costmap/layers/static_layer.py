@@ -27,6 +27,9 @@ class StaticLayerParameters(Parameters):
         True, "Whether cells are free, occupied or unknown, and nothing in between.", read_only=True
     )
     track_unknown_space: bool = parameter(True, "Whether unknown cells stay unknown instead of free.", read_only=True)
+    map_subscribe_transient_local: bool = parameter(
+        True, "Whether a map that was published before is taken from a latched topic.", read_only=True
+    )
     enabled: bool = parameter(True, "Whether the layer is used.")
 
 
@@ -47,7 +50,8 @@ class StaticLayer(Layer):
     @property
     def inputs(self) -> tuple[Input, ...]:
         """Implement `Layer.inputs`."""
-        return (Input(self.parameters.map_topic, OccupancyGrid, self.set_map),)
+        p = self.parameters
+        return (Input(p.map_topic, OccupancyGrid, self.set_map, latched=p.map_subscribe_transient_local),)
 
     def missing_input(self, now: float) -> str:
         """Return that there is no map until one has come."""

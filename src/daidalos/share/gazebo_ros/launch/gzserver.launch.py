@@ -8,6 +8,8 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
+from daidalos.nodes.packages import model_path_with_exports
+
 SWITCHES = {
     "version": "say which one this is, and end",
     "verbose": "say more",
@@ -67,6 +69,7 @@ def server(context):
         arguments=arguments,
         parameters=parameters,
         output="screen",
+        additional_env=model_path_with_exports(context.environment),
         on_exit=[Shutdown()] if is_true("server_required") else [],
     )
     return [node] if is_true("server") else []

@@ -9,6 +9,8 @@ from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
 
+from daidalos.nodes.packages import model_path_with_exports
+
 
 def simulator(context):
     """Make the nodes from arguments that are known by now."""
@@ -20,6 +22,7 @@ def simulator(context):
         executable="gz_sim",
         arguments=words,
         output="screen",
+        additional_env=model_path_with_exports(context.environment),
         on_exit=[Shutdown()] if ends else [],
     )
     view = IncludeLaunchDescription(
