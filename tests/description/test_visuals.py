@@ -106,3 +106,17 @@ def test_a_place_where_very_many_triangles_meet_stays_quick():
     fan = triangles_of(Cone(1.0, 1.0), 4000)
     part = _flat(fan.vertices, fan.faces)
     assert np.linalg.norm(part.normals, axis=1) == pytest.approx(1.0, abs=1e-5)
+
+
+def test_a_mesh_has_the_texture_that_the_model_keeps_beside_its_meshes(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    meshes, textures = tmp_path / "meshes", tmp_path / "materials" / "textures"
+    meshes.mkdir()
+    textures.mkdir(parents=True)
+    image.fromarray(np.array([[[255, 0, 0], [0, 255, 0]]], dtype=np.uint8)).save(textures / "wood.png")
+    (meshes / "plate.mtl").write_text("newmtl wood\nmap_Kd wood.png\n")
+    (meshes / "plate.obj").write_text(
+        "mtllib plate.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3\n"
+    )
+    (part,) = visual_parts(Visual(Mesh("plate.obj", meshes / "plate.obj")))
+    assert part.texture[..., :3].tolist() == [[[255, 0, 0], [0, 255, 0]]]

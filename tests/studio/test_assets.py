@@ -26,6 +26,12 @@ def test_reads_a_mesh_of_a_package(resolver):
     assert resolver.read("package://my_robot/meshes/body%20part.stl") == b"mesh"
 
 
+def test_a_texture_is_found_where_models_of_gazebo_keep_it(resolver, share):
+    (share / "materials" / "textures").mkdir(parents=True)
+    (share / "materials" / "textures" / "wood.png").write_bytes(b"picture")
+    assert resolver.read("package://my_robot/meshes/wood.png") == b"picture"
+
+
 @pytest.mark.parametrize(
     "uri",
     [

@@ -27,6 +27,7 @@ from daidalos.description.geometry import (
     Sphere,
     require_size,
 )
+from daidalos.description.resolve import texture_file
 
 _log = logging.getLogger(__name__)
 _FORMATS = ("stl", "dae", "obj", "gltf", "glb", "ply", "off")
@@ -154,12 +155,27 @@ def read_scene(path: Path, where: str, with_materials: bool = False) -> Any:
     log.propagate = False
     _reading.set(path)
     try:
-        scene = trimesh.load_scene(path, file_type=kind, skip_materials=not with_materials)
+        scene = trimesh.load_scene(
+            path, file_type=kind, skip_materials=not with_materials, resolver=_texture_resolver(path)
+        )
         unit = _collada_unit(path) if kind == "dae" else 1.0
         return scene if unit == 1.0 else scene.scaled(unit)
     except Exception as problem:
         # The readers of the formats raise whatever their file's content leads them to.
         raise DescriptionError(f"mesh {path} cannot be read: {_reason(problem, kind)}", where) from None
+
+
+def _texture_resolver(path: Path) -> Any:
+    """Return what finds the files that a mesh names: beside it, or where Gazebo's models keep textures."""
+    from trimesh.resolvers import FilePathResolver
+
+    class Resolver(FilePathResolver):  # type: ignore[misc]  # trimesh's is not typed
+        def get(self, name: str) -> bytes:
+            named = texture_file(path.parent / name.strip())
+            data: bytes = named.read_bytes() if named.is_file() else super().get(name)
+            return data
+
+    return Resolver(str(path))
 
 
 def _reason(problem: Exception, kind: str) -> str:

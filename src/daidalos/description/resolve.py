@@ -93,6 +93,17 @@ def packages_near(name: str, folder: Path) -> Iterator[Path]:
         yield from (folder for folder in (around / name, around / "models" / name) if folder.is_dir())
 
 
+def texture_file(path: Path) -> Path:
+    """Return the file of a texture that a mesh names: `path`, or its namesake in the model's ``materials/textures``.
+
+    Gazebo's models keep textures there, beside the folder of the meshes that name them.
+    """
+    if path.exists():
+        return path
+    in_materials = path.parent.parent / "materials" / "textures" / path.name
+    return in_materials if in_materials.is_file() else path
+
+
 def _package_name(manifest: Path) -> str:
     try:
         found = re.search(rb"<name>\s*([^<\s]+)\s*</name>", manifest.read_bytes())

@@ -8,6 +8,8 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
+from daidalos.description.resolve import texture_file
+
 EXTENSIONS = frozenset(
     {
         ".bmp", ".dae", ".gif", ".glb", ".gltf", ".bin", ".jpeg", ".jpg", ".mtl", ".obj", ".png", ".ply",
@@ -72,6 +74,7 @@ class AssetResolver:
             raise AssetError(f"{uri[:80]}...: longer than {MAX_URI_LENGTH} characters")
         try:
             path, share = self._locate(uri)
+            path = texture_file(path)
             real = path.resolve()
             if not (share is not None and real.is_relative_to(share.resolve())) and not self._is_readable(real):
                 raise AssetRefusedError(

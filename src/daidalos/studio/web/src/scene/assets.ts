@@ -99,8 +99,7 @@ export class Assets {
   }
 
   private async readCollada(uri: string, text: string): Promise<Object3D> {
-    const images = [...text.matchAll(/<init_from>(?:\s*<ref>)?\s*([^<]+?)\s*</g)].map((match) => match[1] as string);
-    const manager = await this.managerFor(uri, images);
+    const manager = await this.managerFor(uri, colladaImages(text));
     // ROS ignores the file's up axis: the loader must not rotate the mesh.
     const collada = new ColladaLoader(manager).parse(text.replace(/<up_axis>[^<]*<\/up_axis>/, ""), "");
     if (!collada) {
@@ -165,6 +164,15 @@ function copy(model: Object3D): Object3D {
     }
   });
   return clone;
+}
+
+/** The files of a COLLADA file's images; what surfaces name in the same way are images, not files. */
+export function colladaImages(text: string): string[] {
+  const blocks = [...text.matchAll(/<image\b.*?<\/image>/gs)].map((match) => match[0]);
+  return blocks.flatMap((block) => {
+    const file = /<init_from>(?:\s*<ref>)?\s*([^<]+?)\s*</.exec(block)?.[1];
+    return file ? [file] : [];
+  });
 }
 
 function gltfReferences(data: ArrayBuffer): string[] {
