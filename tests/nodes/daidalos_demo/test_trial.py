@@ -2,9 +2,15 @@
 
 import numpy as np
 import pytest
+import rclpy
+from builtin_interfaces.msg import Time
+from nav_msgs.msg import OccupancyGrid
+from rclpy.executors import SingleThreadedExecutor
 from scipy import ndimage
 
 from daidalos.description.footprint import Footprint
+from daidalos.nodes.conversions import grid_message
+from daidalos.nodes.daidalos_demo._robot import Robot
 from daidalos.nodes.daidalos_demo.trial import _CLEARANCE_M, choose_goals
 
 
@@ -35,3 +41,28 @@ def test_goals_are_reachable_clear_and_spread(plan: Footprint, seed: int) -> Non
 def test_the_seed_decides(plan: Footprint) -> None:
     np.testing.assert_array_equal(choose_goals(plan, 3, 1), choose_goals(plan, 3, 1))
     assert not np.array_equal(choose_goals(plan, 3, 1), choose_goals(plan, 3, 2))
+
+
+def test_a_goal_waits_until_the_map_reaches_as_far() -> None:
+    rclpy.init(args=[])
+    node = rclpy.create_node("trial")
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    robot = Robot(node)
+    reached = executor.create_task(robot.until_mapped(2.0, 0.5, 60.0))
+    try:
+        robot.map = _map_as_far_as(1.9)
+        executor.spin_until_future_complete(reached, timeout_sec=1.0)
+        assert not reached.done()
+        robot.map = _map_as_far_as(2.1)
+        executor.spin_until_future_complete(reached, timeout_sec=20.0)
+        assert reached.done()
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.shutdown()
+
+
+def _map_as_far_as(x: float) -> OccupancyGrid:
+    width = round((x + 1.0) / 0.1)
+    return grid_message(np.zeros((20, width), np.int8), 0.1, np.array([-1.0, -1.0]), "map", Time())

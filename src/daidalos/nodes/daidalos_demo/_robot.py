@@ -13,6 +13,7 @@ from daidalos.nodes.conversions import pose_stamped
 from daidalos.nodes.qos import LATCHED
 from daidalos.samples.fields import duration_message
 
+_POLL_S = 0.25
 _TURN_LIMIT_S = 30.0
 _RUNNING = (1, 2)  # accepted and executing, of action_msgs/msg/GoalStatus
 
@@ -62,7 +63,14 @@ class Robot:
 
     async def _until(self, condition: Callable[[], Awaitable[bool]]) -> None:
         while not await condition():
-            await self.pause(0.25)
+            await self.pause(_POLL_S)
+
+    async def until_mapped(self, x: float, y: float, limit_s: float) -> None:
+        """Wait until the map reaches as far as a place, but no longer than a limit."""
+        for _ in range(round(limit_s / _POLL_S)):
+            if self.map is not None and _is_within(self.map, x, y):
+                return
+            await self.pause(_POLL_S)
 
     async def pause(self, seconds: float) -> None:
         """Wait for some seconds of a steady clock."""
@@ -105,3 +113,11 @@ class Robot:
         if answer.status == GoalStatus.STATUS_SUCCEEDED:
             return True, ""
         return False, answer.result.error_msg or f"it ended with status {answer.status}"
+
+
+def _is_within(grid: Any, x: float, y: float) -> bool:
+    """Return whether a place is on a map, whose axes are those of its frame."""
+    info = grid.info
+    column = (x - info.origin.position.x) / info.resolution
+    row = (y - info.origin.position.y) / info.resolution
+    return bool(0.0 <= column < info.width and 0.0 <= row < info.height)

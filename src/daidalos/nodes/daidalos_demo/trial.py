@@ -31,6 +31,7 @@ _LIDAR_HEIGHT_M = 0.18
 _RASTER_M = 0.05
 _SETTLE_S = 1.0
 _GOAL_LIMIT_S = 180.0
+_MAP_LIMIT_S = 15.0
 
 Say = Callable[[str], None]
 
@@ -139,6 +140,7 @@ class Trial(Node):
         )
 
     async def _drive(self, goal: Any) -> GoalReport:
+        await self._robot.until_mapped(goal[0], goal[1], _MAP_LIMIT_S)
         begun, travelled = self._truth.now_s, self._truth.travelled
         reached, reason = await self._robot.drive(goal, _GOAL_LIMIT_S)
         ended, path_length = self._truth.now_s, self._truth.travelled - travelled
