@@ -148,7 +148,7 @@ def remapping_arguments(rules: list[str]) -> list[str]:
 def existing_file(text: str) -> str:
     """Return the path of an existing file; argument type."""
     if not os.path.isfile(text):
-        raise ArgumentTypeError(f"File '{text}' does not exist!")
+        raise ArgumentTypeError(f"can't open '{text}': there is no such file")
     return text
 
 
