@@ -149,8 +149,8 @@ def _transport_settings() -> dict[str, Any]:
         "transport/link/tx/lease": _MINUTE_MS,
         "transport/link/tx/keep_alive": 2,
         # A peer that is stopped (Ctrl-Z, a debugger) must not stop those who publish to it for long: its link
-        # is closed, and made again when it goes on.
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": 1_000_000,
+        # is closed, and made again when it goes on. One that gets no processor for a second must not lose messages.
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": 3_000_000,
         # Nor must it block peers that connect, or the shutdown: it retries.
         "transport/unicast/open_timeout": 2_000,
         # A new peer is told of all our endpoints at once. What does not fit into the queue makes zenoh give the
