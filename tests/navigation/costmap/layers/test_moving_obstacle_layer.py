@@ -3,7 +3,7 @@
 import numpy as np
 
 from daidalos.navigation.contracts import NavigationContext
-from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.moving_obstacle_layer import (
     MovingObstacleLayer,
@@ -56,3 +56,17 @@ def test_a_way_is_forgotten_when_the_walker_is_gone():
 def test_prediction_time_is_how_far_the_way_goes():
     short, long = (walked(1.0, prediction_time=time)[0].costmap.costs for time in (0.3, 1.5))
     assert (short == 254).sum() < 0.5 * (long == 254).sum()
+
+
+def test_nothing_is_marked_where_the_robot_stands():
+    """Somebody walks towards the robot and would pass through it; below it, the layer below shows through."""
+    layer = MovingObstacleLayer(
+        MovingObstacleLayerParameters(prediction_time=3.0), NavigationContext(footprint=Footprint.circle(0.2))
+    )
+    layered = LayeredCostmap(CostmapParameters(rolling_window=True, width=6.0, height=6.0), [layer])
+    for k in range(11):
+        layer.add_scan("scan", scan(ROBOT, [(2.2 - k / 10, 0.0, 0.2)]), ROBOT, k / 10)
+        layered.update(ROBOT, k / 10)
+    costs = layered.costmap
+    assert costs.cost_at(0.6, 0.0) == costs.cost_at(-0.6, 0.0) == 254
+    assert not FootprintCollisionChecker(costs, Footprint.circle(0.2)).in_collision(ROBOT)

@@ -11,6 +11,7 @@ from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import LETHAL_OBSTACLE, Bounds, Costmap, Window
+from daidalos.navigation.costmap.footprint import fill_polygon
 from daidalos.navigation.costmap.observation import Observation
 from daidalos.navigation.tracking import MovingObstacleTracker, Track
 
@@ -40,7 +41,8 @@ class MovingObstacleLayerParameters(Parameters):
 class MovingObstacleLayer(Layer):
     """Layer of the ground that tracked obstacles will pass soon, at constant velocity; lethal.
 
-    The layer of the obstacles themselves stands below it, inflation above.
+    The layer of the obstacles themselves stands below it, inflation above. Nothing is marked where the robot stands:
+    whoever comes towards it will not pass through it, and it may drive away.
     """
 
     names = ("daidalos::MovingObstacleLayer",)
@@ -55,6 +57,7 @@ class MovingObstacleLayer(Layer):
         p = self.parameters
         self._trackers = {name: MovingObstacleTracker(p.max_width, p.min_speed) for name in p.sources}
         self._strips: list[tuple[Array, Array, float]] = []
+        self._under_robot = self.context.footprint.at(np.zeros(3))
 
     @property
     def inputs(self) -> tuple[Input, ...]:
@@ -75,6 +78,7 @@ class MovingObstacleLayer(Layer):
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
         """Include where obstacles were predicted before, and where they are now."""
         p = self.parameters
+        self._under_robot = self.context.footprint.at(robot_pose)
         for strip in self._strips:
             bounds = bounds.including(_bounds(*strip))
         self._strips = []
@@ -86,7 +90,20 @@ class MovingObstacleLayer(Layer):
         return bounds
 
     def update_costs(self, costmap: Costmap, window: Window) -> None:
-        """Mark the strips."""
+        """Mark the strips, except below the robot and a cell around it."""
+        from scipy.ndimage import binary_dilation
+
+        here = costmap.window_of(Bounds().including_points(self._under_robot).expanded(2.0 * costmap.resolution))
+        before = costmap.costs[here.slices].copy()
+        self._mark(costmap)
+        if here.empty:
+            return
+        stand = Costmap(np.zeros_like(before), costmap.resolution, costmap.origin + _corner(here) * costmap.resolution)
+        fill_polygon(stand, self._under_robot, LETHAL_OBSTACLE)
+        below = binary_dilation(stand.costs == LETHAL_OBSTACLE)
+        costmap.costs[here.slices][below] = before[below]
+
+    def _mark(self, costmap: Costmap) -> None:
         for begin, end, radius in self._strips:
             part = costmap.window_of(_bounds(begin, end, radius))
             if part.empty:
@@ -102,6 +119,11 @@ class MovingObstacleLayer(Layer):
         """Forget all tracks."""
         for tracker in self._trackers.values():
             tracker.reset()
+
+
+def _corner(window: Window) -> Array:
+    """Return the column and row of a window's first cell."""
+    return np.array([window.left, window.bottom], dtype=np.float64)
 
 
 def _bounds(begin: Array, end: Array, radius: float) -> Bounds:
