@@ -404,15 +404,15 @@ class Input:
     topic : str
         Its topic; empty for the costmap's own ``map_topic``.
     type : type
-        For a layer `OccupancyGrid`, `LaserScanData` or `CloudData`; for a costmap filter `FilterInfo` or `FilterMask`.
-        For a behaviour `numpy.ndarray`, for a velocity (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`, for an empty
-        message, as for a task at a waypoint. For such a task also `numpy.ndarray`, for an image.
+        For a layer `OccupancyGrid`, `LaserScanData`, `CloudData` or `RangeData`; for a costmap filter `FilterInfo` or
+        `FilterMask`. For a behaviour `numpy.ndarray`, for a velocity (x [m/s], y [m/s], yaw [rad/s]), or `NoneType`,
+        for an empty message, as for a task at a waypoint. For such a task also `numpy.ndarray`, for an image.
     take : callable
-        Called with a map; or with a scan or cloud, the base pose at its time in the costmap's frame, and that time
-        [s]; or with a velocity and the time [s]; or with nothing; or with a function that returns an image's pixels,
-        shape (height, width) or (height, width, 3) for RGB, and raises `TaskFailed` where they cannot be read. Called
-        with the information about a filter's mask it returns the input of that mask, or None where the filter cannot
-        use it.
+        Called with a map; or with a scan, cloud or range, the base pose at its time in the costmap's frame, and that
+        time [s]; or with a velocity and the time [s]; or with nothing; or with a function that returns an image's
+        pixels, shape (height, width) or (height, width, 3) for RGB, and raises `TaskFailed` where they cannot be read.
+        Called with the information about a filter's mask it returns the input of that mask, or None where the filter
+        cannot use it.
     latched : bool
         Whether a map that was published before it is subscribed to is wanted (durability transient local).
     """

@@ -14,7 +14,7 @@ from daidalos.common.pose3 import quaternion_from_yaw, rotation_matrix, yaw_from
 
 if TYPE_CHECKING:
     from daidalos.mapping.scan import LaserScanData
-    from daidalos.navigation.costmap.observation import CloudData
+    from daidalos.navigation.costmap.observation import CloudData, RangeData
 
 SMALLEST_CELL = 1e-4
 """Least resolution of a map [m] that is used."""
@@ -205,6 +205,14 @@ def scan_data(scan: Any, sensor: Array | SensorMount) -> LaserScanData:
         sensor_tilt=tilt,
         sensor_height=height,
     )
+
+
+def range_data(message: Any, sensor: SensorMount) -> RangeData:
+    """Return a ``sensor_msgs/msg/Range`` of a sensor that is mounted so."""
+    from daidalos.navigation.costmap.observation import RangeData
+
+    pose = np.asarray(sensor.pose, dtype=np.float64)
+    return RangeData(message.range, message.min_range, message.max_range, message.field_of_view, pose)
 
 
 def cloud_data(cloud: Any, transform: Any) -> CloudData:

@@ -22,7 +22,7 @@ from nav2_msgs.srv import (
 from nav_msgs.msg import OccupancyGrid
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import LaserScan, Range
 from tf2_msgs.msg import TFMessage
 
 from daidalos.nodes.conversions import grid_array, grid_message, pose_stamped, transform_stamped
@@ -287,3 +287,15 @@ def test_a_map_is_taken_from_a_latched_topic_unless_the_layer_asks_for_new_ones_
     told = capfd.readouterr().err
     assert "without effect: always_send_full_costmap: the whole costmap is always published" in told
     assert "not declared" not in told
+
+
+def test_a_sonar_marks_what_it_measures(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    sonar = {"plugin": "nav2_costmap_2d::RangeSensorLayer", "topics": ["sonar"], "no_readings_timeout": 5.0}
+    bench = Bench(stage({NODE: {**ROLLING, "plugins": ["sonar_layer"], "sonar_layer": sonar}})).start()
+    assert bench.server._costmap._missing_input() == "there is no measurement on 'sonar'"
+    message = Range(range=0.62, min_range=0.02, max_range=2.0, field_of_view=0.3)
+    message.header.frame_id, message.header.stamp = "laser", bench.stage.stamp
+    publisher = bench.stage.node.create_publisher(Range, "/sonar", 10)
+    publisher.publish(message)
+    bench.step_until(lambda costmap: cost(costmap, 0.3 - 0.62, 0.0) == LETHAL)
+    assert bench.server._costmap._missing_input() == ""

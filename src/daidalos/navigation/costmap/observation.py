@@ -36,6 +36,34 @@ class CloudData:
 
 
 @dataclass(frozen=True)
+class RangeData:
+    """Measurement of a sonar or an infrared sensor.
+
+    Attributes
+    ----------
+    range : float
+        Distance [m] of the nearest thing in its cone; infinite and minus infinite for nothing and something where the
+        sensor measures no distance.
+    min_range, max_range : float
+        What it can measure [m].
+    field_of_view : float
+        Whole angle [rad] of its cone.
+    sensor_pose : ndarray, shape (3,)
+        Pose (x, y, yaw) of the sensor in the frame of the base; it looks along x.
+    """
+
+    range: float
+    min_range: float
+    max_range: float
+    field_of_view: float
+    sensor_pose: Array
+
+    def lifted(self, height: float) -> "RangeData":
+        """Return the same measurement: it says nothing of heights."""
+        return self
+
+
+@dataclass(frozen=True)
 class Observation:
     """Rays of one sensor measurement in the costmap's frame.
 

@@ -26,13 +26,14 @@ from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.costmap_filter import FilterInfo
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
-from daidalos.navigation.costmap.observation import CloudData
+from daidalos.navigation.costmap.observation import CloudData, RangeData
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import COSTMAP_LAYERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import (
     cloud_data,
     pose2_of_transform,
+    range_data,
     scan_data,
 )
 from daidalos.nodes.cycles import wait_until
@@ -233,6 +234,7 @@ class CostmapNode(ManagedNode):
             OccupancyGrid: self._listen_to_map,
             LaserScanData: self._listen_to_scans,
             CloudData: self._listen_to_clouds,
+            RangeData: self._listen_to_ranges,
             FilterInfo: partial(listen_to_filter_info, self),
         }
         for one in layer.inputs:
@@ -275,6 +277,15 @@ class CostmapNode(ManagedNode):
             return cloud_data(cloud, found.transform)
 
         self._listen_to_sensor(PointCloud2, listened, convert)
+
+    def _listen_to_ranges(self, listened: Input) -> None:
+        from sensor_msgs.msg import Range
+
+        def convert(message: Any) -> RangeData | None:
+            mount = self._sensor_poses.find(message.header.frame_id)
+            return None if mount is None else range_data(message, mount)
+
+        self._listen_to_sensor(Range, listened, convert)
 
     def _listen_to_sensor(self, kind: Any, listened: Input, convert: Callable[[Any], Any]) -> None:
         """Pass messages on with the pose of the base at their time; `convert` returns None for what cannot be used."""
