@@ -475,6 +475,11 @@ class Layer(NavigationExtension):
         return bool(getattr(self.parameters, "enabled", True))
 
     @property
+    def contained(self) -> tuple[Layer, ...]:
+        """Layers that this one is made of."""
+        return ()
+
+    @property
     def voxels(self) -> VoxelGrid | None:
         """What the layer knows in space, for display; None for layers that are flat."""
         return None

@@ -299,3 +299,29 @@ def test_a_sonar_marks_what_it_measures(stage: Callable[[dict[str, Any]], Stage]
     publisher.publish(message)
     bench.step_until(lambda costmap: cost(costmap, 0.3 - 0.62, 0.0) == LETHAL)
     assert bench.server._costmap._missing_input() == ""
+
+
+def test_layers_in_a_container_have_parameters_and_topics_of_their_own(
+    stage: Callable[[dict[str, Any]], Stage],
+) -> None:
+    obstacles = {**ROLLING["obstacle_layer"], "plugin": "nav2_costmap_2d::ObstacleLayer"}
+    inside = {"plugins": ["front_obstacles"], "front_obstacles": obstacles}
+    contained = {"plugin": "nav2_costmap_2d::PluginContainerLayer", **inside}
+    alone = {name: value for name, value in ROLLING.items() if name != "obstacle_layer"}
+    bench = Bench(stage({NODE: {**alone, "plugins": ["group"], "group": contained}})).start()
+    bench.see(SEE_NEAR)
+    bench.step_until(lambda costmap: cost(costmap, *NEAR) == LETHAL)
+
+
+def test_an_unknown_layer_in_a_container_is_named(
+    stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
+) -> None:
+    contained = {
+        "plugin": "nav2_costmap_2d::PluginContainerLayer",
+        "plugins": ["front"],
+        "front": {"plugin": "nav2_costmap_2d::ObstacleLayr"},
+    }
+    test = stage({NODE: {**ROLLING, "plugins": ["group"], "group": contained}})
+    assert test.add(PlannerServer()).trigger_configure() == TransitionCallbackReturn.FAILURE
+    told = capfd.readouterr().err
+    assert "'group.front.plugin': there is no costmap layer 'nav2_costmap_2d::ObstacleLayr'; did you mean" in told

@@ -172,7 +172,8 @@ class CostmapNode(ManagedNode):
         for name in self._settings.filters:
             serve_toggle(self, name)
         self.layered = LayeredCostmap(self._settings, layers)
-        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), map(type, layers))
+        kinds = [type(one) for layer in layers for one in (layer, *layer.contained)]
+        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), kinds)
         self._publishers = [output_publisher(self, layer, one) for layer in layers for one in layer.outputs]
         self._interface = CostmapInterface(self)
 

@@ -221,7 +221,7 @@ class ObstacleLayer(Layer):
             return
         if self.parameters.footprint_clearing_enabled and self._under_robot is not None:
             fill_polygon(costmap, self._under_robot, FREE_SPACE)
-        _combine(costmap.costs[window.slices], self._seen.costs[window.slices], self.parameters.combination_method)
+        combine(costmap.costs[window.slices], self._seen.costs[window.slices], self.parameters.combination_method)
 
     def _clear(self, seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
         """Clear the cells that rays passed."""
@@ -346,7 +346,8 @@ def clear_rays(
 
 
 @compiled
-def _combine(below: Costs, above: Costs, method: int) -> None:
+def combine(below: Costs, above: Costs, method: int) -> None:
+    """Write costs over others: 0 all that is known, 1 the larger of both, 2 the larger where the other is known."""
     for row in range(below.shape[0]):
         for column in range(below.shape[1]):
             cost = above[row, column]
