@@ -363,3 +363,12 @@ def test_texts_in_markup_are_yaml(context, text):
     request = get_composable_node_load_request(load._LoadComposableNodes__composable_node_descriptions[0], context)
     assert [one.value.bool_value for one in request.extra_arguments] == [True]
     assert [list(one.value.integer_array_value) for one in request.parameters] == [[1, 2]]
+
+
+def test_parameters_of_a_named_node_count_more_than_those_of_all(context, tmp_path):
+    path = tmp_path / "parameters.yaml"
+    path.write_text(
+        "/ns:\n  node:\n    ros__parameters: {first: 1, second: 2}\n/**:\n  ros__parameters: {second: 22, third: 33}\n"
+    )
+    messages = to_parameters_list(context, "node", "/ns", [path])
+    assert [(one.name, one.value.integer_value) for one in messages] == [("second", 2), ("third", 33), ("first", 1)]

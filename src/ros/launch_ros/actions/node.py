@@ -288,7 +288,8 @@ class Node(ExecuteProcess):
 
         Its first line names the launch file, for messages about the parameters.
         """
-        written_in = context.get_locals_as_dict().get("current_launch_file_path")
+        # Stand-ins of a context, as tests have, know no launch file.
+        written_in = getattr(context, "get_locals_as_dict", dict)().get("current_launch_file_path")
         node = self.node_name if self.is_node_name_fully_specified() else "/**"
         source = f"# from: {written_in}\n" if written_in else ""
         text = source + _dump_yaml({node: {"ros__parameters": params}}, quoted=True)
