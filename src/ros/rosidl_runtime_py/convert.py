@@ -89,7 +89,9 @@ def _summary(values: Any, kind: str, inner: str) -> str:
     if "/" in inner:
         package, _, short = inner.partition("/")
         name = f"{package}/msg/{short}"
-    length = f"[{len(values)}]" if is_array else f", length: {len(values)}"
+    bound = kind.removesuffix(">").rpartition(", ")[2]
+    limit = f"[{bound}]" if bound.isdigit() and not is_array else ""
+    length = f"[{len(values)}]" if is_array else f"{limit}, length: {len(values)}"
     return f"<{'array' if is_array else 'sequence'} type: {name}{length}>"
 
 

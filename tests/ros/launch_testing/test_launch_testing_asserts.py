@@ -361,3 +361,24 @@ def test_launch_arguments():
     for wrong in ("a", "a=1", ":=1"):
         with pytest.raises(RuntimeError, match="malformed launch argument"):
             parse_launch_arguments([wrong])
+
+
+def test_lines_of_several_expectations_have_texts_in_them_and_begin_with_expressions():
+    lines = ["Subscribed to [/chatter]", "  History (Depth): KEEP_LAST (10)", "more"]
+    expected = ["Subscribed", re.compile(r"  History \(Depth\): KEEP_\w+")]
+    assert expect_output(lines=lines, expected_lines=expected, strict=True)
+    assert not expect_output(lines=["before", *lines], expected_lines=expected, strict=True)
+    assert expect_output(lines=["before", lines[0], "between", lines[1]], expected_lines=expected)
+    assert not expect_output(lines=[lines[0], "between", lines[1]], expected_lines=expected, strict=True)
+
+
+def test_one_strict_expectation_is_for_every_line():
+    assert expect_output(lines=["a 1", "a 2"], expected_lines=re.compile("a"), strict=True)
+    assert not expect_output(lines=["a 1", "b"], expected_lines=re.compile("a"), strict=True)
+    assert expect_output(lines=["a", "a"], expected_lines="a", strict=True)
+    assert not expect_output(lines=["a", "ab"], expected_lines="a", strict=True)
+
+
+def test_strict_expressions_match_from_the_beginning_of_a_text():
+    assert expect_output(text="a 1\nb", expected_text=re.compile("a"), strict=True)
+    assert not expect_output(text="b a", expected_text=re.compile("a"), strict=True)

@@ -23,3 +23,11 @@ class Name(StrEnum):
 def test_values_of_other_classes_are_shown_as_what_they_stand_for(message: object, text: str) -> None:
     assert message_to_yaml(message) == f"data: {text}\n"
     assert message_to_csv(message) == text
+
+
+def test_a_summary_names_the_bound_of_a_sequence() -> None:
+    from rosidl_runtime_py import message_to_ordereddict
+    from test_msgs.msg import BoundedSequences
+
+    fields = message_to_ordereddict(BoundedSequences(int32_values=[1, 2]), no_arr=True)
+    assert fields["int32_values"] == "<sequence type: int32[3], length: 2>"

@@ -289,7 +289,8 @@ class Node(ExecuteProcess):
         Its first line names the launch file, for messages about the parameters.
         """
         # Stand-ins of a context, as tests have, know no launch file.
-        written_in = getattr(context, "get_locals_as_dict", dict)().get("current_launch_file_path")
+        known = context.get_locals_as_dict() if hasattr(context, "get_locals_as_dict") else {}
+        written_in = known.get("current_launch_file_path")
         node = self.node_name if self.is_node_name_fully_specified() else "/**"
         source = f"# from: {written_in}\n" if written_in else ""
         text = source + _dump_yaml({node: {"ros__parameters": params}}, quoted=True)

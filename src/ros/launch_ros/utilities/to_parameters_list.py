@@ -56,7 +56,7 @@ def _read_file(path: pathlib.Path, node_name: str | None, namespace: str | None)
     if not sections:
         return _flatten(content, "")  # a file of names and values, whatever the node
     found: dict[str, Any] = {}
-    for pattern, parameters in sorted(sections, key=lambda section: "*" not in section[0]):  # names count more
+    for pattern, parameters in sorted(sections, key=lambda section: section[0] != "/**"):  # all others count more
         if _matches(pattern, full_name):
             found.update(_flatten(parameters, ""))
     return found

@@ -26,7 +26,8 @@ def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
     expected_text
         A text, a regular expression, or several of these that follow one another.
     strict
-        Whether the whole text must be it.
+        Whether the text must be it, begin with what the expression matches, or begin with the first of several and
+        have nothing between two of them.
     """
     if isinstance(expected_text, str):
         expected = normalize_lineseps(expected_text)
@@ -47,7 +48,7 @@ def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
 def _build_pattern_match(pattern: re.Pattern[str], *, strict: bool) -> Match:
     def find_pattern(actual: str, start: int = 0) -> tuple[int, int] | None:
         actual = normalize_lineseps(actual)
-        match = pattern.fullmatch(actual, start) if strict else pattern.search(actual, start)
+        match = pattern.match(actual, start) if strict else pattern.search(actual, start)
         return None if match is None else match.span()
 
     return find_pattern
@@ -66,8 +67,6 @@ def _build_sequence_match(items: list[Any], *, strict: bool) -> Match:
                 return None
             begin = place[0] if begin is None else begin
             end = place[1]
-        if strict and end != len(actual):
-            return None
         return (start if begin is None else begin), end
 
     return find_sequence
@@ -83,11 +82,26 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
     expected_lines
         A text or a regular expression for one line, or several of these for lines one after another.
     strict
-        Whether a line must be exactly it, and no other lines may stand between two.
+        Whether no other lines may stand before them or between two; of one alone, whether every line must be it.
     """
-    several = not (isinstance(expected_lines, str) or hasattr(expected_lines, "search"))
-    items = list(expected_lines) if several else [expected_lines]
-    matches = [build_text_match(item, strict=strict) for item in items]
+    if isinstance(expected_lines, str) or hasattr(expected_lines, "match"):
+        return _build_each_line_match(expected_lines) if strict else _build_lines_match([expected_lines], strict=False)
+    return _build_lines_match(list(expected_lines), strict=strict)
+
+
+def _build_each_line_match(expected: str | re.Pattern[str]) -> Match:
+    is_expected = expected.__eq__ if isinstance(expected, str) else expected.match
+
+    def find_lines(actual: Iterable[str], start: int = 0) -> tuple[int, int] | None:
+        lines = normalize_lineseps(list(actual))
+        return (start, len(lines)) if all(map(is_expected, lines[start:])) else None
+
+    return find_lines
+
+
+def _build_lines_match(items: list[Any], *, strict: bool) -> Match:
+    """Match lines that have a text in them, or that a regular expression matches from their beginning."""
+    matches = [build_text_match(item, strict=not isinstance(item, str)) for item in items]
 
     def find_lines(actual: Iterable[str], start: int = 0) -> tuple[int, int] | None:
         lines = normalize_lineseps(list(actual))
