@@ -224,6 +224,22 @@ def test_a_signal_that_comes_while_the_pipe_is_read_is_not_sent_again(monkeypatc
         signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals between threads are POSIX's")
+def test_a_signal_that_is_left_over_is_not_sent_to_the_next_handler(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(signal_watch, "_TIMEOUT_S", 0.2)
+    handled: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: handled.append(number))
+    try:
+        with signal_watch.watching(signal.SIGINT):
+            assert signal_watch._writer is not None
+            os.write(signal_watch._writer, bytes([signal.SIGINT]))
+        with signal_watch.watching(signal.SIGINT):
+            time.sleep(0.6)
+        assert handled == []
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_others_may_be_told_of_signals(raised: list[int]) -> None:
     reader, writer = os.pipe()
     os.set_blocking(writer, False)

@@ -98,8 +98,8 @@ def _watch(reader: int) -> None:
         poll.poll()
         time.sleep(_TIMEOUT_S)
         numbers = _take(reader)
-        if numbers is None:
-            break
+        if numbers is None or reader != _reader:
+            break  # what is left belongs to a watch that has ended
         if _runs != before:
             _put_back(numbers)  # they may have come since then: they have their own time
         elif numbers and before != resent and main.ident is not None and signal.getsignal(numbers[-1]) in _watched:
