@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import math
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,6 +22,10 @@ DEFINITIONS = {
     ),
     "msg/Point.msg": "geometry_msgs/Point[] points\nPoint2[<=2] pair\n",
     "msg/Point2.msg": "int32 x\nint32 y\n",
+    "msg/Shadows.msg": (
+        "string property\nint32 unknown\nint32 range\nfloat64 float -inf\nbool bool\nstring str\n"
+        "Point2[2] list\nint8 value\n"
+    ),
     "srv/Change.srv": "Tool tool\n---\nbool success\nstring message\n",
     "action/Weld.action": "float32 speed 0.5\n---\nfloat32 length\n---\nfloat32 progress\n",
 }
@@ -54,6 +59,18 @@ def test_messages_of_a_users_package(package):
     assert codec.decode(codec.encode(tool)) == tool
     with pytest.raises(AssertionError, match="'name'"):
         tool.name = 1
+
+
+def test_fields_may_be_called_like_what_is_built_into_python(package):
+    shadows = module(package, "msg").Shadows(property="a", unknown=1, range=2, bool=True, str="b", value=3)
+    assert (shadows.property, shadows.unknown, shadows.range, shadows.float) == ("a", 1, 2, -math.inf)
+    assert (shadows.bool, shadows.str, shadows.value) == (True, "b", 3)
+    assert [point.x for point in shadows.list] == [0, 0]
+    shadows.property = "c"
+    codec = codec_of(type(shadows))
+    assert codec.decode(codec.encode(shadows)) == shadows
+    with pytest.raises(AssertionError, match="'property'"):
+        shadows.property = 1
 
 
 def test_a_field_may_be_called_like_a_word_of_python(package):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins as builtins
 import math
 from array import array
 from collections.abc import Iterable, Mapping, Sequence

@@ -72,6 +72,11 @@ def _pythonic(field: Field) -> Field:
     return replace(field, name=f"{field.name}_") if keyword.iskeyword(field.name) else field
 
 
+def _builtin(name: str, message: Message) -> str:
+    """Return the expression of something built into Python, also where a field of the message has its name."""
+    return f"_m.builtins.{name}" if any(field.name == name for field in message.fields) else name
+
+
 def _docstring(message: Message) -> Iterator[str]:
     text = message.comment.strip().replace("\\", "\\\\").replace('"""', "'''")
     summary = text or f"{message.name}."
@@ -103,9 +108,9 @@ def _literal(kind: FieldType, value: object) -> str:
     if kind.base == "byte":
         return repr(bytes([int(value)]))  # type: ignore[call-overload]
     if kind.base in {"float32", "float64"} and value in (float("inf"), float("-inf")):
-        return f"float({str(value)!r})"
+        return f"{'-' if value == float('-inf') else ''}_m.math.inf"
     if isinstance(value, float) and value != value:
-        return "float('nan')"
+        return "_m.math.nan"
     return repr(value)
 
 
@@ -137,7 +142,7 @@ def _empty(kind: FieldType, message: Message) -> str:
         return f"_m.zeros({kind.base!r}, {kind.size})"
     if kind.is_primitive:
         return f"[{_EMPTY[kind.base]}] * {kind.size}"
-    return f"[{_class_of(kind.base, message)}() for _ in range({kind.size})]"
+    return f"[{_class_of(kind.base, message)}() for _ in {_builtin('range', message)}({kind.size})]"
 
 
 def _typecode(base: str) -> str:
@@ -162,9 +167,9 @@ def _init(message: Message) -> Iterator[str]:
         else:
             parameters.append(f"{field.name}: {_hint(field, message)} | None = None")
     star = "*, " if parameters else ""
-    yield f"    def __init__(self, {star}{''.join(p + ', ' for p in parameters)}**unknown: object) -> None:"
-    yield "        if unknown:"
-    yield "            _m.reject(self, unknown)"
+    yield f"    def __init__(self, {star}{''.join(p + ', ' for p in parameters)}**_unknown: object) -> None:"
+    yield "        if _unknown:"
+    yield "            _m.reject(self, _unknown)"
     for field in message.fields:
         yield from _initial(field, message)
 
@@ -189,7 +194,7 @@ def _initial(field: Field, message: Message) -> Iterator[str]:
 
 def _property(field: Field, message: Message) -> Iterator[str]:
     name, hint = field.name, _hint(field, message)
-    yield "    @property"
+    yield f"    @{_builtin('property', message)}"
     yield f"    def {name}(self) -> {hint}:"
     yield f"        return self._{name}"
     yield ""

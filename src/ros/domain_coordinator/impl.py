@@ -10,14 +10,15 @@ from contextlib import contextmanager
 
 _DOMAINS = 100
 # Below the ports that systems give to whoever asks for any.
-_FIRST_PORT = 20300
+PORT_BASE = 20300
+_FIRST = random.randrange(_DOMAINS)
 
 
 class default_selector:
-    """Selector that proposes all domains from 1 to 100, from a random one on."""
+    """Selector that proposes all domains from 1 to 100, from one on that is random, and the same in a process."""
 
     def __init__(self) -> None:
-        self._next = random.randrange(_DOMAINS)
+        self._next = _FIRST
 
     def __call__(self) -> int:
         """Return the next domain to try."""
@@ -44,7 +45,7 @@ def domain_id(selector: Callable[[], int] | None = None) -> Iterator[int]:
         domain = select()
         holder = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         with holder:
-            if _bind(holder, _FIRST_PORT + domain):
+            if _bind(holder, PORT_BASE + domain):
                 yield domain
                 return
     raise RuntimeError(f"none of the ROS domains from 1 to {_DOMAINS} is free: other tests hold them")

@@ -77,9 +77,9 @@ class LaunchDescriptionSource:
 
     @property
     def location(self) -> str:
-        """The location as text; before launching, its substitutions in words."""
+        """The location as text; before launching, its substitutions as Python shows them."""
         if self.__expanded_location is None:
-            return " + ".join(substitution.describe() for substitution in self.__location)
+            return " + ".join(str(substitution) for substitution in self.__location)
         return self.__expanded_location
 
     @property

@@ -9,6 +9,7 @@ from typing import Any
 
 import rclpy.logging
 from rclpy.callback_groups import CallbackGroup
+from rclpy.impl.entities import PublisherHandle, SubscriptionHandle
 from rclpy.impl.errors import UnsupportedEventTypeError as UnsupportedEventTypeError
 from rclpy.impl.event_statuses import (
     IncompatibleTypeStatus,
@@ -100,7 +101,10 @@ class _EventCallbacks:
 
 
 class SubscriptionEventCallbacks(_EventCallbacks):
-    """Functions to call at events of a subscription; by default incompatible publishers are warned of."""
+    """Functions to call at events of a subscription; by default incompatible publishers are warned of.
+
+    Of another type is warned while no publisher of the topic has the subscription's own.
+    """
 
     def __init__(
         self,
@@ -122,7 +126,7 @@ class SubscriptionEventCallbacks(_EventCallbacks):
         self.use_default_callbacks = use_default_callbacks
 
     def create_event_handlers(
-        self, callback_group: CallbackGroup, subscription: TopicHandle, topic_name: str
+        self, callback_group: CallbackGroup, subscription: SubscriptionHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return a handler for every function."""
         with subscription:
@@ -136,7 +140,9 @@ class SubscriptionEventCallbacks(_EventCallbacks):
             )
 
         def warn_of_type(event: Any) -> None:
-            logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be received from it.")
+            # A bridge joins two types on one topic: each end has others of its own type there.
+            if not subscription.get_publisher_count():
+                logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be received from it.")
 
         kinds = QoSSubscriptionEventType
         return self._handlers(
@@ -158,7 +164,10 @@ class SubscriptionEventCallbacks(_EventCallbacks):
 
 
 class PublisherEventCallbacks(_EventCallbacks):
-    """Functions to call at events of a publisher; by default incompatible subscriptions are warned of."""
+    """Functions to call at events of a publisher; by default incompatible subscriptions are warned of.
+
+    Of another type is warned while no subscription to the topic has the publisher's own.
+    """
 
     def __init__(
         self,
@@ -178,7 +187,7 @@ class PublisherEventCallbacks(_EventCallbacks):
         self.use_default_callbacks = use_default_callbacks
 
     def create_event_handlers(
-        self, callback_group: CallbackGroup, publisher: TopicHandle, topic_name: str
+        self, callback_group: CallbackGroup, publisher: PublisherHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return a handler for every function."""
         with publisher:
@@ -192,7 +201,9 @@ class PublisherEventCallbacks(_EventCallbacks):
             )
 
         def warn_of_type(event: Any) -> None:
-            logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be sent to it.")
+            # A bridge joins two types on one topic: each end has others of its own type there.
+            if not publisher.get_subscription_count():
+                logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be sent to it.")
 
         kinds = QoSPublisherEventType
         return self._handlers(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import array
 from collections import OrderedDict
+from collections.abc import Mapping
 from typing import Any
 
 from daidalos.interfaces.message import Message
@@ -32,27 +33,38 @@ def message_to_ordereddict(
     """
     result: OrderedDict[str, Any] = OrderedDict()
     for name, kind in msg.get_fields_and_field_types().items():
-        result[name] = _plain(getattr(msg, name), kind, truncate_length, no_arr, no_str)
+        result[name] = _convert_value(
+            getattr(msg, name), field_type=kind, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str
+        )
     return result
 
 
-def _plain(value: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool) -> Any:
+def _convert_value(
+    value: Any,
+    *,
+    field_type: str | None = None,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> Any:
+    """Return a value of a message, or a container of such values, as Python's own."""
+    options: dict[str, Any] = {"truncate_length": truncate_length, "no_arr": no_arr, "no_str": no_str}
     if isinstance(value, Message):
-        return message_to_ordereddict(value, truncate_length=limit, no_arr=no_arr, no_str=no_str)
+        return message_to_ordereddict(value, **options)
     if isinstance(value, bytes):
-        shortened = limit is not None and len(value) > limit
-        return (
-            "".join(chr(item) for item in value[:limit]) + ("..." if shortened else "")
-            if len(value) > 1
-            else ord(value)
-        )
+        return _truncated("".join(map(chr, value)), truncate_length) if len(value) > 1 else ord(value)
     if isinstance(value, str):
-        if no_str:
-            return f"<string length: <{len(value)}>>"
-        return f"{value[:limit]}..." if limit is not None and len(value) > limit else str.__str__(value)
+        return f"<string length: <{len(value)}>>" if no_str else _truncated(str.__str__(value), truncate_length)
     if isinstance(value, (int, float)):
         return _plain_number(value)
-    return _plain_sequence(value, kind, limit, no_arr, no_str)
+    if isinstance(value, Mapping):
+        pairs = ((key, _convert_value(item, **options)) for key, item in value.items())
+        return OrderedDict(pairs) if isinstance(value, OrderedDict) else dict(pairs)
+    return _convert_sequence(value, field_type or "", options)
+
+
+def _truncated(text: str, limit: int | None) -> str:
+    return f"{text[:limit]}..." if limit is not None and len(text) > limit else text
 
 
 def _plain_number(value: float) -> float:
@@ -61,17 +73,19 @@ def _plain_number(value: float) -> float:
     return kind(value)
 
 
-def _plain_sequence(values: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool) -> Any:
+def _convert_sequence(values: Any, kind: str, options: dict[str, Any]) -> Any:
     inner = _value_type(kind)
-    if no_arr:
+    if options["no_arr"]:
         return _summary(values, kind, inner)
+    limit = options["truncate_length"]
     cut = limit is not None and len(values) > limit
     shown = values[:limit] if cut else values
     if hasattr(shown, "tolist"):
         items = shown.tolist()
     else:
-        items = [_plain(value, inner, limit, no_arr, no_str) for value in shown]
-    return [*items, "..."] if cut else items
+        items = [_convert_value(value, field_type=inner, **options) for value in shown]
+    items += ["..."] if cut else []
+    return tuple(items) if isinstance(values, tuple) else items
 
 
 def _value_type(kind: str) -> str:
@@ -88,11 +102,19 @@ def _summary(values: Any, kind: str, inner: str) -> str:
     name = inner
     if "/" in inner:
         package, _, short = inner.partition("/")
-        name = f"{package}/msg/{short}"
+        name = f"{package}/{_namespace(short)}/{short}"
     bound = kind.removesuffix(">").rpartition(", ")[2]
     limit = f"[{bound}]" if bound.isdigit() and not is_array else ""
     length = f"[{len(values)}]" if is_array else f"{limit}, length: {len(values)}"
     return f"<{'array' if is_array else 'sequence'} type: {name}{length}>"
+
+
+def _namespace(short: str) -> str:
+    """Return where a type is declared: names of messages hold no underscore, those of parts of others end in one."""
+    _, *parts = short.split("_")
+    if not parts:
+        return "msg"
+    return "srv" if len(parts) == 1 and parts[0] in ("Request", "Response", "Event") else "action"
 
 
 def message_to_yaml(

@@ -19,6 +19,7 @@ from transforms3d import _gohlketransforms as _transforms
 
 Array: TypeAlias = NDArray[np.float64]
 Axes: TypeAlias = "str | tuple[int, int, int, int]"
+_AXES2TUPLE = _transforms._AXES2TUPLE
 
 
 def _array(values: ArrayLike) -> Array:

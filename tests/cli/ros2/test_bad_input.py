@@ -33,6 +33,11 @@ _BRIEFLY = ["topic", "pub", "--once", "--max-wait-time-secs", "1.1"]
     ("line", "status", "lines"),
     [
         ("topc list", 2, ["Did you mean 'topic'?"]),
+        (
+            "topic pub --max-wait-time-secs 1 /x std_msgs/msg/Empty",
+            1,
+            ["--max-wait-time-secs option is only effective"],
+        ),
         ("topic ech /x", 2, ["Did you mean 'echo'?"]),
         ("run demo_nodes_pi talker", 1, ["Package 'demo_nodes_pi' not found", "Did you mean 'demo_nodes_py'"]),
         ("run demo_nodes_py talkr", 1, ["No executable found", "Did you mean 'talker'?"]),

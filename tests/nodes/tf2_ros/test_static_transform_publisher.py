@@ -61,5 +61,5 @@ def test_what_is_no_number_is_named() -> None:
 def test_what_is_missing_or_too_much_is_said(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         parse(words)
-    assert ended.value.code == 2
+    assert ended.value.code == 255
     assert "error:" in capsys.readouterr().err

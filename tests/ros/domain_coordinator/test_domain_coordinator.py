@@ -20,3 +20,10 @@ def test_a_domain_is_free_again_afterwards():
             assert other != held
     with domain_id(lambda: held) as again:
         assert again == held
+
+
+def test_a_process_reserves_the_same_domain_again():
+    with domain_id() as first:
+        pass
+    with domain_id() as second:
+        assert second == first

@@ -96,7 +96,7 @@ def test_source_of_a_description_at_hand():
 def test_source_that_depends_on_the_launch_is_not_there_before():
     source = PythonLaunchDescriptionSource([LaunchConfiguration("nowhere"), "/x.launch.py"])
     assert source.try_get_launch_description_without_context() is None
-    assert "LaunchConfig('nowhere')" in source.location
+    assert "launch.substitutions.launch_configuration.LaunchConfiguration" in source.location
 
 
 def write(path, text):

@@ -397,7 +397,7 @@ def test_launch_files_of_the_tutorial(ran, tmp_path, monkeypatch):
     assert nodes["hector_mapping/hector_mapping"][2]["map_multi_res_levels"] == 4
     assert nodes["map_server/map_server"][0] == [f"{share}/tb3_navigation/map/arena.yaml"]
     assert nodes["amcl/amcl"][2]["max_particles"] == 2000
-    assert nodes["nav2_bringup/move_base"][2]["global_costmap.costmap_common"] == 1
+    assert nodes["move_base/move_base"][2]["global_costmap.costmap_common"] == 1
     assert nodes["robot_state_publisher/robot_state_publisher"][2]["publish_frequency"] == 30.0
     assert set(nodes) >= {"a_pkg/a_pub.py", "a_pkg/a_sub.py", "gazebo_ros/spawn_entity.py"}
 

@@ -110,6 +110,20 @@ def test_who_asks_for_nothing_is_warned_of_another_type(node: Node, monkeypatch:
     ]
 
 
+def test_two_types_that_a_bridge_joins_on_one_topic_are_no_fault(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    logged: list[str] = []
+    monkeypatch.setattr(OUTPUT, "write", lambda record: logged.append(record.message))
+    node.create_subscription(Int32, "topic", lambda _: None, 10)
+    node.create_publisher(Int32, "topic", 10)
+    node.create_publisher(String, "topic", 10)
+    told: list[Any] = []
+    callbacks = SubscriptionEventCallbacks(incompatible_type=told.append)
+    node.create_subscription(String, "topic", lambda _: None, 10, event_callbacks=callbacks)
+    spin_until(executor_of(node), lambda: told)
+    run_ready(executor_of(node))
+    assert logged == []
+
+
 def test_deadlines_count_from_the_first_message(node: Node) -> None:
     both = Both(node, STRICT, STRICT, "pub_deadline", "sub_deadline")
     run_ready(both.executor)

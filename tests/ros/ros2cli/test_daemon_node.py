@@ -53,6 +53,7 @@ def test_the_daemon_answers_as_a_node(daemon):
     assert daemon.system.methodHelp("no_method") == ""
     assert ["driver", "/"] in daemon.get_node_names_and_namespaces()
     assert ["/speech", ["std_msgs/msg/String"]] in daemon.get_topic_names_and_types()
+    assert not any("daemon" in service for service, _ in daemon.get_service_names_and_types())
     assert daemon.count_publishers("/speech") == 1
     (info,) = daemon.get_publishers_info_by_topic("/speech")
     assert (info.node_name, info.qos_profile.depth) == ("driver", 10)

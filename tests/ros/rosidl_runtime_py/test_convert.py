@@ -31,3 +31,11 @@ def test_a_summary_names_the_bound_of_a_sequence() -> None:
 
     fields = message_to_ordereddict(BoundedSequences(int32_values=[1, 2]), no_arr=True)
     assert fields["int32_values"] == "<sequence type: int32[3], length: 2>"
+
+
+def test_a_summary_names_the_service_or_action_of_an_item() -> None:
+    from rosidl_runtime_py import message_to_ordereddict
+    from test_msgs.srv import BasicTypes_Event
+
+    fields = message_to_ordereddict(BasicTypes_Event(), no_arr=True)
+    assert fields["request"] == "<sequence type: test_msgs/srv/BasicTypes_Request[1], length: 0>"

@@ -8,7 +8,7 @@ import string
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 from rclpy.node import Node
 
@@ -105,7 +105,7 @@ def parse(arguments: Sequence[str]) -> dict[str, Any]:
     if len(arguments) in _OLD_ORDERS and not any(word.startswith("--") for word in arguments):
         print("[WARN] []: Old-style arguments are deprecated; see --help for new-style arguments", file=sys.stderr)
         return _parameters(dict(zip(_OLD_ORDERS[len(arguments)], arguments, strict=True)))
-    parser = argparse.ArgumentParser(prog="static_transform_publisher", description=_DESCRIPTION)
+    parser = _Parser(prog="static_transform_publisher", description=_DESCRIPTION)
     for name in _TRANSLATION:
         parser.add_argument(f"--{name}", help=f"{name} component of translation", default=0.0)
     for name in _QUATERNION:
@@ -118,6 +118,14 @@ def parse(arguments: Sequence[str]) -> dict[str, Any]:
     if any(given[name] is not None for name in _QUATERNION) and any(given[name] is not None for name in _ANGLES):
         parser.error("a rotation is given by roll, pitch and yaw or by a quaternion, not by both")
     return _parameters({name: value for name, value in given.items() if value is not None})
+
+
+class _Parser(argparse.ArgumentParser):
+    """Parser that ends the process as the original program does, with status 255."""
+
+    def error(self, message: str) -> NoReturn:
+        self.print_usage(sys.stderr)
+        self.exit(255, f"{self.prog}: error: {message}\n")
 
 
 def _joined(arguments: Sequence[str]) -> list[str]:

@@ -34,7 +34,6 @@ _OF_ROS1 = {
     "actionlib_msgs": "action_msgs",
     "gmapping": "slam_toolbox",
     "hector_slam": "hector_mapping",
-    "move_base": "nav2_bringup",
     "move_base_msgs": "nav2_msgs",
     "roscpp_tutorials": "demo_nodes_cpp",
     "rospy": "rclpy",

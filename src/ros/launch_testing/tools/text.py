@@ -56,9 +56,13 @@ def _build_pattern_match(pattern: re.Pattern[str], *, strict: bool) -> Match:
 
 def _build_sequence_match(items: list[Any], *, strict: bool) -> Match:
     matches = [build_text_match(item) for item in items]
+    return _chained(matches, strict=strict)
 
-    def find_sequence(actual: str, start: int = 0) -> tuple[int, int] | None:
-        actual = normalize_lineseps(actual)
+
+def _chained(matches: list[Match], *, strict: bool) -> Match:
+    """Return a function that finds what follows one another; strictly, with nothing before it or between two."""
+
+    def find_sequence(actual: Any, start: int = 0) -> tuple[int, int] | None:
         begin: int | None = None
         end = start
         for match in matches:
@@ -80,12 +84,14 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
     Parameters
     ----------
     expected_lines
-        A text or a regular expression for one line, or several of these for lines one after another.
+        A text or a regular expression for one line, or several of these, or of such several, for lines one after
+        another.
     strict
         Whether no other lines may stand before them or between two; of one alone, whether every line must be it.
+        Of several in one of several, other lines may stand between.
     """
     if isinstance(expected_lines, str) or hasattr(expected_lines, "match"):
-        return _build_each_line_match(expected_lines) if strict else _build_lines_match([expected_lines], strict=False)
+        return _build_each_line_match(expected_lines) if strict else _build_line_search(expected_lines)
     return _build_lines_match(list(expected_lines), strict=strict)
 
 
@@ -99,31 +105,16 @@ def _build_each_line_match(expected: str | re.Pattern[str]) -> Match:
     return find_lines
 
 
-def _build_lines_match(items: list[Any], *, strict: bool) -> Match:
-    """Match lines that have a text in them, or that a regular expression matches from their beginning."""
-    matches = [build_text_match(item, strict=not isinstance(item, str)) for item in items]
+def _build_line_search(expected: str | re.Pattern[str]) -> Match:
+    """Find the next line that has a text in it, or that a regular expression matches from its beginning."""
+    is_found = (lambda line: expected in line) if isinstance(expected, str) else expected.match
 
-    def find_lines(actual: Iterable[str], start: int = 0) -> tuple[int, int] | None:
+    def find_line(actual: Iterable[str], start: int = 0) -> tuple[int, int] | None:
         lines = normalize_lineseps(list(actual))
-        for begin in range(start, len(lines)):
-            end = _follow(matches, lines, begin, strict)
-            if end is not None:
-                return begin, end
-            if strict:
-                return None
-        return None if matches else (start, start)
+        return next(((i, i + 1) for i in range(start, len(lines)) if is_found(lines[i])), None)
 
-    return find_lines
+    return find_line
 
 
-def _follow(matches: list[Match], lines: list[str], begin: int, strict: bool) -> int | None:
-    position = begin
-    for number, match in enumerate(matches):
-        while position < len(lines) and match(lines[position]) is None:
-            if strict or number == 0:
-                return None
-            position += 1
-        if position == len(lines):
-            return None
-        position += 1
-    return position
+def _build_lines_match(items: list[Any], *, strict: bool) -> Match:
+    return _chained([build_line_match(item) for item in items], strict=strict)

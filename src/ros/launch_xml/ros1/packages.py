@@ -96,11 +96,6 @@ NODES: dict[tuple[str, str], NodeMapping] = {
     ),
     ("joy", "joy_node"): NodeMapping("joy", "joy_node"),
     ("key_teleop", "key_teleop.py"): NodeMapping("key_teleop", "key_teleop"),
-    ("move_base", "move_base"): NodeMapping(
-        "nav2_bringup",
-        "move_base",
-        note="the planners, the controller and both costmaps of Nav2 stand in for it",
-    ),
     ("robot_state_publisher", "state_publisher"): NodeMapping("robot_state_publisher", "robot_state_publisher"),
     ("rospy_tutorials", "listener"): NodeMapping("demo_nodes_py", "listener"),
     ("rospy_tutorials", "talker"): NodeMapping("demo_nodes_py", "talker"),

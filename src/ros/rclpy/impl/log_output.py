@@ -70,9 +70,9 @@ class Output:
         return self.levels.get(name, LoggingSeverity.UNSET) if name else self.default_level
 
     def set_level(self, name: str, level: LoggingSeverity) -> None:
-        """Set a logger's level; UNSET makes it follow its ancestors again."""
+        """Set a logger's level; UNSET makes it follow its ancestors again, and the root log everything."""
         if not name:
-            self.default_level = level or LoggingSeverity.INFO
+            self.default_level = level
         elif level:
             self.levels[name] = level
         else:

@@ -89,6 +89,8 @@ def direct_node(args: argparse.Namespace, name: str | None = None, **options: An
         overrides: list[Parameter[Any]] = []
         if getattr(args, "use_sim_time", False):
             overrides.append(Parameter("use_sim_time", value=True))
+        if not getattr(args, "start_type_description_service", True):
+            overrides.append(Parameter("start_type_description_service", value=False))
         options = {"start_parameter_services": False, "parameter_overrides": overrides, **options}
         node = rclpy.create_node(name or f"{NODE_NAME_PREFIX}_{os.getpid()}", **options)
         try:

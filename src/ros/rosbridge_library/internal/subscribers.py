@@ -115,11 +115,10 @@ class MultiSubscriber:
         check_class(self.msg_class, self.topic, msg_type)
 
     def subscribe(self, client_id: Hashable, callback: Callback) -> None:
-        """Add a client."""
+        """Add a client, or replace its callback."""
         with self.rlock:
             if client_id in self.subscriptions:
                 self.subscriptions[client_id] = callback
-                return
             self.new_subscriptions[client_id] = callback
             self._match_again()
             if self.new_subscriber is None:
@@ -150,7 +149,9 @@ class MultiSubscriber:
         with self.rlock:
             if self.new_subscriber is None:
                 return
-            self.callback(msg, self.new_subscriptions.values())
+            # A client that is there already gets the message from the other subscription.
+            newcomers = self.new_subscriptions.keys() - self.subscriptions.keys()
+            self.callback(msg, [self.new_subscriptions[one] for one in newcomers])
             self.subscriptions.update(self.new_subscriptions)
             self.new_subscriptions = {}
             self.node_handle.destroy_subscription(self.new_subscriber)

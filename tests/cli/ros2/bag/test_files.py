@@ -107,7 +107,7 @@ def test_lists(bag):
         ("play a -m chatter", 1, "[ERROR] [ros2bag]: --remap: 'chatter' is not a remapping rule"),
         ("play a --playback-until-sec 1 --playback-until-nsec 1", 2, "not allowed with argument"),
         ("play a --qos-profile-overrides-path none.yaml", 2, "can't open 'none.yaml': there is no such file"),
-        ("play a --qos-profile-overrides-path qos.yaml", 1, "qos.yaml: /chatter: Unexpected key `reliabilty`"),
+        ("play a --qos-profile-overrides-path qos.yaml", 1, "Unexpected key `reliabilty` for QoS profile"),
         ("record", 1, "[ERROR] [ros2bag]: Need to specify at least one option out of --all, --all-topics"),
         ("record -a -o a", 1, "[ERROR] [ros2bag]: Output folder 'a' already exists."),
         ("record -a -s leveldb", 2, "invalid choice: 'leveldb'"),

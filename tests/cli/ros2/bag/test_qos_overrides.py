@@ -27,8 +27,8 @@ def test_policies(tmp_path):
     [
         ("- /scan", "expected a mapping of topics"),
         ("/scan: [", "line 1, column 9"),
-        ("/scan: 3", "/scan: expected a mapping of QoS policies"),
-        ("/scan: {reliability: often}", "/scan: reliability: expected one of system_default, reliable, best_effort"),
+        ("/scan: 3", "expected a mapping of QoS policies (topic /scan in "),
+        ("/scan: {reliability: often}", "reliability: expected one of system_default, reliable, best_effort"),
         ("/scan: {depth: -1}", "`depth` may not be a negative value"),
         ("/scan: {deadline: {sec: 1}}", "must include both seconds"),
         ("/scan: {deadline: {sec: -1, nsec: 0}}", "may not be a negative value"),

@@ -31,5 +31,5 @@ def read_overrides(path: str | None) -> dict[str, QoSProfile]:
             profiles[str(topic)] = interpret_dict_as_qos_profile(policies)
         except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as fault:
             text = fault.args[0] if fault.args else fault
-            raise error(f"{path}: {topic}: {text}") from None
+            raise error(f"{text} (topic {topic} in {path})") from None
     return profiles

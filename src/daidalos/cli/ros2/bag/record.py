@@ -29,30 +29,35 @@ class RecordVerb(Verb):
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the verb's arguments."""
-        parser.add_argument(
-            "-o", "--output", help="Destination of the bag; by default a folder with the time in its name"
-        )
-        parser.add_argument(
-            "-s", "--storage", default=DEFAULT, choices=common.STORAGES, help="Storage (default: %(default)s)"
-        )
-        _add_selection(parser)
-        _add_discovery(parser)
-        _add_files(parser)
-        _add_running(parser)
-        _add_compression(parser)
+        add_recorder_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Record until Ctrl-C."""
         from rosbag2_py import Recorder
 
         uri = args.output or datetime.now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S")
-        _check(args, uri)
+        fault = validate_parsed_arguments(args, uri)
+        if fault is not None:
+            raise common.error(fault)
         storage, options = _storage_options(args, uri), _record_options(args)
         try:
             recorder = Recorder(storage, options, args.log_level, args.node_name)
         except (BagError, ValueError) as fault:
             raise common.error(str(fault)) from None
         return _run(recorder)
+
+
+def add_recorder_arguments(parser: ArgumentParser) -> None:
+    """Declare the arguments of a program that records."""
+    parser.add_argument("-o", "--output", help="Destination of the bag; by default a folder with the time in its name")
+    parser.add_argument(
+        "-s", "--storage", default=DEFAULT, choices=common.STORAGES, help="Storage (default: %(default)s)"
+    )
+    _add_selection(parser)
+    _add_discovery(parser)
+    _add_files(parser)
+    _add_running(parser)
+    _add_compression(parser)
 
 
 def _add_selection(parser: ArgumentParser) -> None:
@@ -192,48 +197,70 @@ def _add_compression(parser: ArgumentParser) -> None:
     add("--compression-format", default="", choices=list(FORMATS), help="By what it is compressed")
 
 
-def _check(args: Namespace, uri: str) -> None:
-    """Raise CliError for contradictory arguments."""
+def validate_parsed_arguments(args: Namespace, uri: str) -> str | None:
+    """Return what contradicts itself in the arguments, or None; warn of what has no effect.
+
+    Topics given without ``--topics`` become those of ``--topics``.
+
+    Parameters
+    ----------
+    args
+        What `add_recorder_arguments` declared.
+    uri
+        Where the bag will be.
+    """
     if args.topics_positional:
         common.warn('Positional "topics" argument deprecated. Please use optional "--topics" argument instead.')
         if args.topics:
-            raise common.error('Only one of positional "topics" or "--topics" may be given.')
+            return 'Only one of positional "topics" or "--topics" may be given.'
         args.topics = args.topics_positional
+    fault = _selection_fault(args)
+    if fault is not None:
+        return fault
+    _warn_of_overridden(args)
+    if Path(uri).exists():
+        return f"Output folder '{uri}' already exists."
+    if args.use_sim_time and args.no_discovery:
+        return (
+            "--use-sim-time and --no-discovery both set, but are incompatible settings. "
+            "The /clock topic needs to be discovered to record with sim time."
+        )
+    if args.compression_format and args.compression_mode == "none":
+        return "Invalid choice: Cannot specify compression format without a compression mode."
+    if args.compression_mode != "none" and not args.compression_format:
+        return "Invalid choice: Cannot specify compression mode without a compression format."
+    if args.snapshot_mode and args.max_cache_size == 0:
+        return "In snapshot mode, the max_cache_size shall not be set to zero."
+    return None
+
+
+def _selection_fault(args: Namespace) -> str | None:
+    """Return what is wrong with the choice of topics and services, or None."""
     everything = args.all or args.all_topics
     if not (everything or args.all_services or args.services or args.topics or args.topic_types or args.regex):
-        raise common.error(
+        return (
             "Need to specify at least one option out of --all, --all-topics, --all-services, --services, --topics, "
             "--topic-types or --regex"
         )
     if args.exclude_regex and not (everything or args.topic_types or args.all_services or args.regex):
-        raise common.error(
-            "--exclude-regex argument requires either --all, --all-topics, --topic-types, --all-services or --regex"
-        )
+        return "--exclude-regex argument requires either --all, --all-topics, --topic-types, --all-services or --regex"
     if args.exclude_topics and not (everything or args.topic_types or args.regex):
-        raise common.error("--exclude-topics argument requires either --all, --all-topics, --topic-types or --regex")
+        return "--exclude-topics argument requires either --all, --all-topics, --topic-types or --regex"
     if args.exclude_topic_types and not (everything or args.regex):
-        raise common.error("--exclude-topic-types argument requires either --all, --all-topics or --regex")
+        return "--exclude-topic-types argument requires either --all, --all-topics or --regex"
     if args.exclude_services and not (args.all or args.all_services or args.regex):
-        raise common.error("--exclude-services argument requires either --all, --all-services or --regex")
+        return "--exclude-services argument requires either --all, --all-services or --regex"
+    return None
+
+
+def _warn_of_overridden(args: Namespace) -> None:
+    everything = args.all or args.all_topics
     if (args.all or args.all_services) and args.services:
         common.warn("--all or --all-services will override --services")
     if everything and args.topics:
         common.warn("--all or --all-topics will override --topics")
     if (everything or args.all_services) and args.regex:
         common.warn("--all, --all-topics or --all-services will override --regex")
-    if Path(uri).exists():
-        raise common.error(f"Output folder '{uri}' already exists.")
-    if args.use_sim_time and args.no_discovery:
-        raise common.error(
-            "--use-sim-time and --no-discovery both set, but are incompatible settings. "
-            "The /clock topic needs to be discovered to record with sim time."
-        )
-    if args.compression_format and args.compression_mode == "none":
-        raise common.error("Invalid choice: Cannot specify compression format without a compression mode.")
-    if args.compression_mode != "none" and not args.compression_format:
-        raise common.error("Invalid choice: Cannot specify compression mode without a compression format.")
-    if args.snapshot_mode and args.max_cache_size == 0:
-        raise common.error("In snapshot mode, the max_cache_size shall not be set to zero.")
 
 
 def _storage_options(args: Namespace, uri: str) -> StorageOptions:

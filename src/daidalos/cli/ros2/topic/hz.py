@@ -170,14 +170,14 @@ def _measure_many(node: Node, args: Namespace, clock: Clock, accept: Callable[[A
 
 
 def table(rows: list[tuple[str, Rate]]) -> str:
-    """Return rates as a table."""
+    """Return rates as a table; its lines end in a space, as scripts that read the original's table expect."""
     width = max(len("topic"), *(len(topic) for topic, _ in rows))
     columns = ("rate", "min_delta", "max_delta", "std_dev", "window")
-    head = f"{'topic':>{width}}" + "".join(f"{name:>12}" for name in columns)
+    head = f"{'topic':>{width}}" + "".join(f"{name:>12}" for name in columns) + " "
     lines = [head, "=" * len(head)]
     for topic, one in rows:
         values = (f"{one.rate:.3f}", f"{one.shortest:.3f}", f"{one.longest:.3f}", f"{one.deviation:.5f}", one.window)
-        lines.append(f"{topic:<{width}}" + "".join(f"{value:>12}" for value in values))
+        lines.append(f"{topic:<{width}}" + "".join(f"{value:>12}" for value in values) + " ")
     return "\n".join(lines)
 
 

@@ -77,8 +77,8 @@ class PubVerb(Verb):
             "--max-wait-time-secs",
             type=positive_float,
             default=None,
-            help="This sets the maximum wait time in seconds if '--wait-matching-subscriptions' is set. By default, "
-            "this flag is not set meaning the subscriber will wait endlessly.",
+            help="This sets the maximum wait time in seconds if '--wait-matching-subscriptions', '--once' or "
+            "'--times' is set. By default, this flag is not set meaning the subscriber will wait endlessly.",
         )
         parser.add_argument(
             "--keep-alive",
@@ -98,6 +98,10 @@ class PubVerb(Verb):
         message = message_type()
         stampers = fill(message, values)
         times = 1 if args.once else args.times
+        if args.max_wait_time_secs is not None and not times and args.wait_matching_subscriptions is None:
+            raise CliError(
+                "--max-wait-time-secs option is only effective with --wait-matching-subscriptions, --once or --times"
+            )
         with direct_node(args, args.node_name) as node:
             publisher = node.create_publisher(
                 message_type, args.topic_name, requested_qos(args) or qos_profile_from_short_keys("default")
@@ -125,17 +129,18 @@ def _seconds(text: str) -> float:
 
 def _wait_for_subscriptions(node: Node, publisher: Publisher, wanted: int, limit_s: float | None) -> None:
     """Wait for a number of matching subscriptions, and report progress every second."""
-    deadline = None if limit_s is None else time.monotonic() + limit_s
-    hint = None
+    waited, step, hint = 0.0, 1.0, None
     while publisher.get_subscription_count() < wanted:
-        left = 1.0 if deadline is None else min(1.0, deadline - time.monotonic())
-        if left <= 0:
+        if step >= 1.0:
+            print(f"Waiting for at least {wanted} matching subscription(s)...")
+        step = 1.0 if limit_s is None else min(1.0, limit_s - waited)
+        if step <= 0:
             raise CliError(
                 f"Timed out waiting for subscribers: Expected {wanted} subcribers but only got "
                 f"{publisher.get_subscription_count()} subscribers"
             )
-        print(f"Waiting for at least {wanted} matching subscription(s)...")
-        node.handle.graph.wait_for(lambda: publisher.get_subscription_count() >= wanted, left)
+        node.handle.graph.wait_for(lambda: publisher.get_subscription_count() >= wanted, step)
+        waited += step
         if hint is None and publisher.get_subscription_count() < wanted:
             hint = _mismatch_hint(node, publisher)
             sys.stderr.write(hint)
