@@ -172,3 +172,13 @@ def test_sinks_share_a_message_that_queues_and_the_publisher_do_not() -> None:
         assert got[0] is got[1]
         assert len({id(one) for one in (*taken, got[0], sent)}) == 4
         assert all(one == sent for one in (*taken, *got))
+
+
+def test_a_sample_that_was_taken_before_the_end_keeps_its_time() -> None:
+    receiver = Receiver()
+    receiver.accept(1)
+    taken = receiver.subscription.take()
+    assert taken is not None
+    receiver.subscription.detach()
+    info = receiver.subscription.info(taken[1])
+    assert info.received_ns == taken[1][2]

@@ -103,10 +103,13 @@ class Subscription:
 
     def info(self, item: tuple[Any, ...]) -> SampleInfo:
         """Return the metadata of a taken sample."""
-        if item[0] is not None or self._remote is None:
+        remote = self._remote
+        if item[0] is not None:
             _, stamp, sequence, gid = item
             return SampleInfo(stamp, stamp, sequence, gid)
-        return self._remote.info(item[1], item[2])
+        if remote is None:  # closed, by another thread, since the sample was taken
+            return SampleInfo(item[2], item[2], 0, bytes(16))
+        return remote.info(item[1], item[2])
 
     def accept_local(self, item: tuple[Any, ...]) -> None:
         """Queue a sample of this process."""
