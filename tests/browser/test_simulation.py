@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from pathlib import Path
@@ -120,6 +121,43 @@ def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkey
         simulator.interrupt()
         browser.wait_for("document.body.textContent.includes('No simulator is running')")
         assert browser.errors == []
+
+
+_HOUSE = """<sdf version="1.9"><world name="estate">
+<model name="house"><static>true</static>
+  <model name="ground_floor">{walls}</model>
+</model></world></sdf>"""
+_WALL = """<link name="{name}"><pose>{x} 0 1 0 0 0</pose>
+<visual name="v"><geometry><box><size>0.1 6 2</size></box></geometry></visual></link>"""
+
+
+def test_links_of_nested_models_are_drawn_at_their_poses(browser: Chromium, tmp_path: Path) -> None:
+    walls = "".join(_WALL.format(name=name, x=x) for name, x in (("west", -4), ("east", 4)))
+    (tmp_path / "house.sdf").write_text(_HOUSE.format(walls=walls))
+    with (
+        Terminal(
+            "run",
+            "ros_gz_sim",
+            "gzserver",
+            "--ros-args",
+            "-p",
+            f"world_sdf_file:={tmp_path / 'house.sdf'}",
+            domain=_DOMAIN,
+        ),
+        Terminal("run", "rqt_gui", "rqt_gui", "--headless", "--port", "0", domain=_DOMAIN) as studio,
+    ):
+        browser.open(f"{studio.wait_for('^window: ')[0].split()[1].split('?')[0]}?panel=simulation")
+        browser.wait_for(f"{_MODELS} === '1 model'", 60)
+        browser.wait_for("daidalos.simulated('house::ground_floor::east')")
+        _settle(browser)
+        where = [
+            browser.evaluate(f"daidalos.simulated('house{link}')")
+            for link in ("::ground_floor::west", "", "::ground_floor::east")
+        ]
+        west, middle, east = ((each["x"], each["y"]) for each in where)
+        assert math.dist(west, middle) > 100
+        assert math.dist(east, middle) > 100
+        assert math.dist(west, east) > 0.9 * (math.dist(west, middle) + math.dist(east, middle))
 
 
 def _entities_are_a_tree(browser: Chromium) -> None:

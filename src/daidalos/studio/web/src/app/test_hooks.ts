@@ -43,7 +43,7 @@ export interface TestHooks {
   takeTool(id: string): void;
   /** The labels of the 3-D view, in pixels of its canvas. */
   labels(): { text: string; left: number; right: number; top: number; bottom: number }[];
-  /** Where a model of the simulation is in the window. */
+  /** Where a model of the simulation, or a link as model::link, is drawn in the window. */
   simulated(name: string): { x: number; y: number } | null;
   /** Whether the simulator has still to answer what was done in the Simulation panel. */
   editing(): boolean;
@@ -105,7 +105,7 @@ export function installTestHooks(studio: Studio): void {
     },
     labels: () => labelsIn(world),
     takeTool: (id) => world?.toolbox.selectById(id),
-    simulated: (name) => editor?.modelAt(name) ?? null,
+    simulated: (name) => editor?.entityAt(name) ?? null,
     editing: () => editor?.isBusy ?? false,
     handle: (axis) => editor?.handleAt(axis) ?? null,
   };

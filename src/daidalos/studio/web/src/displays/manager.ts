@@ -2,7 +2,7 @@
 import { effect, untracked } from "@preact/signals";
 import { Box3, type Group } from "three";
 import type { Display, Settings } from "../contract";
-import type { Content } from "../scene/first_view";
+import type { Content } from "../scene/framing";
 import { Display as PageDisplay, type DisplayContext, type FrameInfo } from "./display";
 import { FailedDisplay } from "./failed_display";
 import type { DisplayList } from "./list";
@@ -39,17 +39,24 @@ export class DisplayManager {
 
   /** What there is to see, and the robots in it. */
   bounds(): Content {
-    const [all, robot] = [new Box3(), new Box3()];
+    const all = new Box3();
     for (const { display } of this.made.values()) {
       if (display instanceof PageDisplay) {
-        const box = display.bounds();
-        all.union(box);
-        if (display instanceof RobotModel) {
-          robot.union(box);
-        }
+        all.union(display.bounds());
       }
     }
-    return { all, robot };
+    return { all, robot: this.robotBounds() };
+  }
+
+  /** The box around what robot displays show. */
+  robotBounds(): Box3 {
+    const robot = new Box3();
+    for (const { display } of this.made.values()) {
+      if (display instanceof RobotModel) {
+        robot.union(display.bounds());
+      }
+    }
+    return robot;
   }
 
   /** Create all displays again after time was reset or the server changed; latched messages are received again. */

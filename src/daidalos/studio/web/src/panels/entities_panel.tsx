@@ -7,7 +7,7 @@ import { SearchField } from "../ui/search";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import "../styles/entities.css";
 
-import { filterTree, type Entity, type EntityKind } from "./simulation/entity_tree";
+import { filterTree, type Entity, type EntityKind, splitEntity } from "./simulation/entity_tree";
 import { openRoom, type Room } from "./simulation/room";
 
 const ICONS: Readonly<Record<EntityKind, IconName>> = {
@@ -58,7 +58,7 @@ function Tree({ room: { stage, editor } }: { room: Room }) {
   const selected = current.value.startsWith(`${stage.selected.value}::`) ? current.value : stage.selected.value;
   const choose = (id: string) => {
     current.value = id;
-    stage.select(id.split("::")[0] ?? "");
+    stage.select(splitEntity(id).model);
   };
   const step = (row: Row | undefined) => {
     if (row) {

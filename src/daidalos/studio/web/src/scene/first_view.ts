@@ -1,13 +1,7 @@
 // The first view of a scene: follows what appears in it, until the user moves the view or nothing new comes.
 import { Box3, Vector3 } from "three";
-import { frameView } from "./framing";
+import { frameView, type Content } from "./framing";
 import type { View } from "./view";
-
-/** What there is to see, and the robot in it, which must not become too small; empty boxes where there is none. */
-export interface Content {
-  all: Box3;
-  robot: Box3;
-}
 
 const PERIOD_S = 0.3;
 /** After as many seconds without anything new the view stays; at the latest this long after the first. */
@@ -53,7 +47,7 @@ export class FirstView {
       this.shown = { all: content.all.clone(), robot: content.robot.clone() };
       this.firstAt ||= page;
       this.changedAt = page;
-      this.view.restore(frameView(content.all, content.robot, aspect));
+      this.view.restore(frameView(content, aspect));
     }
     this.isOver = this.firstAt > 0 && (page - this.changedAt > QUIET_S || page - this.firstAt > LONGEST_S);
   }

@@ -4,6 +4,7 @@ import { frameView } from "./framing";
 import { FIELD_OF_VIEW_DEG, HOME, type ViewState } from "./view";
 
 const ASPECT = 1.4;
+const NONE = new Box3();
 
 /** Where a point is on the screen, from -1 to 1 each way. */
 function seen({ focus, distance, yaw, pitch }: ViewState, point: Vector3): Vector3 {
@@ -38,31 +39,52 @@ describe("the first view", () => {
     ["a room's", box(3, 4, 6, 1)],
     ["a hall's", box(-40, 0, 60, 9)],
   ])("shows all of %s corners, and wastes little", (_, all) => {
-    const view = frameView(all, undefined, ASPECT);
+    const view = frameView({ all, robot: NONE }, ASPECT);
     const places = cornersOf(all).map((corner) => seen(view, corner));
     const largest = Math.max(...places.flatMap(({ x, y }) => [Math.abs(x), Math.abs(y)]));
     expect(largest).toBeLessThan(0.9);
     expect(largest).toBeGreaterThan(0.75);
   });
 
-  it("comes nearer where a robot would be a dot in a room of 16 m, and keeps it in sight", () => {
+  it("shows all of a room of 16 m with a small robot in it", () => {
     const room = box(0, 0, 16, 2.5);
-    const robot = box(-7, -6.5, 0.3, 0.2);
-    expect(heightOf(frameView(room, undefined, ASPECT), robot)).toBeLessThan(0.035);
-    const view = frameView(room, robot, ASPECT);
-    expect(heightOf(view, robot)).toBeGreaterThan(0.045);
+    const robot = box(-7, -6.5, 0.4, 0.3);
+    expect(frameView({ all: room, robot }, ASPECT)).toEqual(frameView({ all: room, robot: NONE }, ASPECT));
+  });
+
+  it("comes nearer where a robot would be a dot in a hall of 60 m, and keeps it in sight", () => {
+    const hall = box(0, 0, 60, 9);
+    const robot = box(-27, -26.5, 0.4, 0.3);
+    const view = frameView({ all: hall, robot }, ASPECT);
+    expect(heightOf(view, robot)).toBeGreaterThan(2 * heightOf(frameView({ all: hall, robot: NONE }, ASPECT), robot));
     const middle = seen(view, robot.getCenter(new Vector3()));
     expect(Math.max(Math.abs(middle.x), Math.abs(middle.y))).toBeLessThan(0.75);
+  });
+
+  it("looks down more steeply where walls hide the robot", () => {
+    const room = box(0, 0, 8, 2.5);
+    const robot = box(1, 1, 0.5, 0.4);
+    /** A wall of the room's height stands one metre in front of the robot. */
+    const sees = (from: Vector3, to: Vector3) => {
+      const share = 1 / from.clone().sub(to).setZ(0).length();
+      return to.z + share * (from.z - to.z) > 2.5;
+    };
+    const view = frameView({ all: room, robot, sees }, ASPECT);
+    expect(view.pitch).toBeGreaterThan(1);
+    for (const corner of cornersOf(room).map((each) => seen(view, each))) {
+      expect(Math.max(Math.abs(corner.x), Math.abs(corner.y))).toBeLessThan(0.9);
+    }
+    expect(frameView({ all: room, robot, sees: () => false }, ASPECT).pitch).toBe(HOME.pitch);
   });
 
   it("does not come nearer for a robot that is large enough", () => {
     const room = box(0, 0, 6, 1);
     const robot = box(1, 1, 1.2, 1);
-    expect(frameView(room, robot, ASPECT)).toEqual(frameView(room, undefined, ASPECT));
+    expect(frameView({ all: room, robot }, ASPECT)).toEqual(frameView({ all: room, robot: NONE }, ASPECT));
   });
 
   it("shows the surroundings of a small thing alone", () => {
-    const { distance } = frameView(box(0, 0, 0.01, 0.01), undefined, ASPECT, HOME);
+    const { distance } = frameView({ all: box(0, 0, 0.01, 0.01), robot: NONE }, ASPECT, HOME);
     expect(distance).toBeCloseTo(0.9);
   });
 });

@@ -1,9 +1,19 @@
-// A view that shows what is there: everything, or less where the robot would be too small to be seen.
+// A view that shows what is there: everything, or less where even a pinned robot would be too small to be seen.
 import { Box3, Vector3 } from "three";
-import { FIELD_OF_VIEW_DEG, HOME, type ViewState } from "./view";
+import { FIELD_OF_VIEW_DEG, HOME, positionOf, type ViewState } from "./view";
 
-/** The robot is seen with at least this share of the view's height. */
-const MIN_ROBOT_SHARE = 0.06;
+/** What there is to see, and the robot in it, which must be seen; empty boxes where there is none. */
+export interface Content {
+  all: Box3;
+  robot: Box3;
+  /** Whether nothing is between two points, but for what is within a distance of the second. */
+  sees?: (from: Vector3, to: Vector3, within: number) => boolean;
+}
+
+/** The robot's diagonal has at least this share of the view's height. */
+const MIN_ROBOT_SHARE = 0.022;
+/** How steeply one looks down in turn until no wall hides the robot, in radians. */
+const STEEPER = [0.85, 1.1, 1.35];
 /** What is framed leaves this share of the view free around it, for the bars over its edges. */
 const MARGIN = 0.14;
 /** Nearer than this, in metres, nothing is framed: a small thing alone needs its surroundings. */
@@ -13,15 +23,23 @@ const ALONE_MARGIN = 0.25;
 /** How far the robot may be from the middle of the view, in half heights of the view. */
 const MAX_ROBOT_OFFSET = 0.55;
 
-/** The smallest orbit view from the home direction that shows a box, and the robot well. */
-export function frameView(all: Box3, robot: Box3 | undefined, aspect: number, from: ViewState = HOME): ViewState {
+/** The smallest orbit view from the home direction, or from more above, that shows everything, and the robot well. */
+export function frameView({ all, robot, sees }: Content, aspect: number, from: ViewState = HOME): ViewState {
+  const home = frameFrom(from, all, robot, aspect);
+  if (robot.isEmpty() || !sees) {
+    return home;
+  }
+  const at = robot.getCenter(new Vector3());
+  const within = robot.getSize(new Vector3()).length();
+  const views = [home, ...STEEPER.map((pitch) => frameFrom({ ...from, pitch }, all, robot, aspect))];
+  return views.find((view) => sees(positionOf(view), at, within)) ?? home;
+}
+
+function frameFrom(from: ViewState, all: Box3, robot: Box3, aspect: number): ViewState {
   const whole = fit(withSurroundings(all, robot), aspect, from);
   const distance = Math.max(NEAREST_M, whole.distance);
-  if (!robot || robot.isEmpty()) {
-    return { ...from, kind: "orbit", focus: whole.focus.toArray(), distance };
-  }
   const slope = Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
-  const near = robot.getSize(new Vector3()).length() / (2 * slope * MIN_ROBOT_SHARE);
+  const near = robot.isEmpty() ? Infinity : robot.getSize(new Vector3()).length() / (2 * slope * MIN_ROBOT_SHARE);
   if (near >= distance) {
     return { ...from, kind: "orbit", focus: whole.focus.toArray(), distance };
   }
@@ -32,8 +50,8 @@ export function frameView(all: Box3, robot: Box3 | undefined, aspect: number, fr
 }
 
 /** Where the robot is alone, some of the ground around it. */
-function withSurroundings(all: Box3, robot: Box3 | undefined): Box3 {
-  const isAlone = robot && !robot.isEmpty() && robot.containsBox(all);
+function withSurroundings(all: Box3, robot: Box3): Box3 {
+  const isAlone = !robot.isEmpty() && robot.containsBox(all);
   return isAlone ? all.clone().expandByScalar(ALONE_MARGIN * all.getSize(new Vector3()).length()) : all;
 }
 

@@ -11,7 +11,16 @@ export const HOME: ViewState = { kind: "orbit", focus: [0, 0, 0], distance: 6.5,
 
 export const FIELD_OF_VIEW_DEG = 45;
 const NEAR_M = 0.02;
+/** Of the distance to the focus: nothing nearer is drawn, so that depths far away are told apart. */
+const NEAR_SHARE = 0.005;
 const FAR_M = 2000;
+
+/** Where an orbit view's camera is. */
+export function positionOf({ focus, distance, yaw, pitch }: ViewState): Vector3 {
+  const level = Math.cos(pitch) * distance;
+  const offset = new Vector3(Math.cos(yaw) * level, Math.sin(yaw) * level, Math.sin(pitch) * distance);
+  return offset.add(new Vector3().fromArray(focus));
+}
 
 export class View {
   onChange: () => void = () => undefined;
@@ -82,6 +91,12 @@ export class View {
         };
   }
 
+  /** Whether a point is in front of the camera. */
+  isAhead(point: Vector3): boolean {
+    const { camera } = this;
+    return point.clone().sub(camera.position).dot(camera.getWorldDirection(new Vector3())) > 0;
+  }
+
   /** Metres that one pixel spans at a point. */
   metresPerPixel(at: Vector3, height: number): number {
     if (this.kindNow === "top") {
@@ -139,10 +154,7 @@ export class View {
     [this.lastYaw, this.lastPitch] = [state.yaw, state.pitch];
     this.controls.target.fromArray(state.focus);
     if (state.kind === "orbit") {
-      const level = Math.cos(state.pitch) * state.distance;
-      this.perspective.position
-        .set(Math.cos(state.yaw) * level, Math.sin(state.yaw) * level, Math.sin(state.pitch) * state.distance)
-        .add(this.orbit.target);
+      this.perspective.position.copy(positionOf(state));
     } else {
       this.orthographic.zoom = 1 / (state.distance * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360));
       this.orthographic.position.copy(this.top.target).setZ(this.top.target.z + 10);
@@ -155,6 +167,11 @@ export class View {
 
   /** Let the damping go on; return whether the view still moves. */
   update(): boolean {
+    const near = Math.max(NEAR_M, NEAR_SHARE * this.perspective.position.distanceTo(this.orbit.target));
+    if (Math.abs(near / this.perspective.near - 1) > 0.1) {
+      this.perspective.near = near;
+      this.perspective.updateProjectionMatrix();
+    }
     return this.controls.update();
   }
 

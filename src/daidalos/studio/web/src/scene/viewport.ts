@@ -130,13 +130,15 @@ export class Viewport {
   /** The nearest thing under a pixel, and where it is hit. */
   hitAt(x: number, y: number): Intersection | undefined {
     this.rayThrough(x, y);
-    const pickable: Object3D[] = [];
-    this.scene.traverseVisible((object) => {
-      if (object.userData.pickable) {
-        pickable.push(object);
-      }
-    });
-    return this.raycaster.intersectObjects(pickable, false)[0];
+    return this.nearest();
+  }
+
+  /** Whether nothing is between two points, but for what is within a distance of the second. */
+  sees(from: Vector3, to: Vector3, within: number): boolean {
+    const along = to.clone().sub(from);
+    this.raycaster.ray.set(from, along.clone().normalize());
+    const hit = this.nearest();
+    return !hit || hit.distance > along.length() - within;
   }
 
   dispose(): void {
@@ -150,6 +152,17 @@ export class Viewport {
     this.view.camera.updateMatrixWorld();
     this.raycaster.setFromCamera(at, this.view.camera);
     return this.raycaster.ray;
+  }
+
+  /** The nearest thing that the ray meets. */
+  private nearest(): Intersection | undefined {
+    const pickable: Object3D[] = [];
+    this.scene.traverseVisible((object) => {
+      if (object.userData.pickable) {
+        pickable.push(object);
+      }
+    });
+    return this.raycaster.intersectObjects(pickable, false)[0];
   }
 
   private drawBackground(): void {

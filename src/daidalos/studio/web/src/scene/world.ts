@@ -9,8 +9,9 @@ import type { FrameInfo } from "../displays/display";
 import { Transform } from "../tf/buffer";
 import { Toolbox } from "../tools/toolbox";
 import { FirstView } from "./first_view";
-import { frameView } from "./framing";
+import { frameView, type Content } from "./framing";
 import { DAYLIGHT, DUSK } from "./looks";
+import { RobotPin } from "./robot_pin";
 import { HOME, type ViewKind, type ViewState } from "./view";
 import { Viewport } from "./viewport";
 
@@ -32,6 +33,7 @@ export class World {
   private readonly manager: DisplayManager;
   private readonly stops: (() => void)[] = [];
   private readonly first: FirstView;
+  private readonly pin: RobotPin;
   private readonly followedAt = new Vector3();
   private followedNow = "";
   /** The fixed frame of the first view. */
@@ -64,7 +66,8 @@ export class World {
       },
       this.content,
     );
-    this.first = new FirstView(viewport.view, () => this.manager.bounds());
+    this.first = new FirstView(viewport.view, () => this.seen());
+    this.pin = new RobotPin(container, viewport);
     this.toolbox = new Toolbox(viewport, {
       overlay: this.overlay,
       fixedFrame: () => studio.fixedFrame.current.value,
@@ -103,8 +106,8 @@ export class World {
 
   /** Restore the view of all there is, or of the origin where there is nothing. */
   home(): void {
-    const { all, robot } = this.manager.bounds();
-    const view = all.isEmpty() ? HOME : frameView(all, robot, this.viewport.aspect);
+    const content = this.seen();
+    const view = content.all.isEmpty() ? HOME : frameView(content, this.viewport.aspect);
     this.viewport.view.restore({ ...view, kind: this.viewKind.value });
   }
 
@@ -139,6 +142,7 @@ export class World {
     for (const stop of this.stops) {
       stop();
     }
+    this.pin.dispose();
     this.toolbox.dispose();
     this.manager.dispose();
     this.viewport.dispose();
@@ -161,7 +165,12 @@ export class World {
     }
     this.first.update(page, this.viewport.aspect);
     this.viewport.frame(page);
+    this.pin.update(this.manager.robotBounds(), this.robotFrame() ?? "");
     this.keepView(page);
+  }
+
+  private seen(): Content {
+    return { ...this.manager.bounds(), sees: (from, to, within) => this.viewport.sees(from, to, within) };
   }
 
   private drawingTime(): number | "latest" {

@@ -142,10 +142,10 @@ export class Editor {
     return this.inWindow(this.gizmo.tip(axis));
   }
 
-  /** Where a model is in the window. */
-  modelAt(name: string): { x: number; y: number } | undefined {
-    const position = this.stage.poseOf(name)?.position;
-    return position && this.inWindow(new Vector3(position.x, position.y, position.z));
+  /** Where the centre of what is drawn of a model or a link is in the window. */
+  entityAt(name: string): { x: number; y: number } | undefined {
+    const centre = this.stage.centreOf(name);
+    return centre && this.inWindow(centre);
   }
 
   dispose(): void {

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { entityTree, filterTree, type Entity } from "./entity_tree";
+import { entityTree, filterTree, splitEntity, type Entity } from "./entity_tree";
 
 const PARTS = {
   name: "bot",
@@ -37,4 +37,10 @@ it("keeps with what is found where that is", () => {
   expect(written(filterTree(tree, "wall"))).toBe("static room(link wall)");
   expect(filterTree(tree, "")).toBe(tree);
   expect(filterTree(tree, "nothing")).toEqual([]);
+});
+
+it("tells links of nested models from their models", () => {
+  expect(splitEntity("bot")).toEqual({ model: "bot", link: undefined });
+  expect(splitEntity("bot::base")).toEqual({ model: "bot", link: "base" });
+  expect(splitEntity("house::room::wall")).toEqual({ model: "house", link: "room::wall" });
 });

@@ -13,6 +13,12 @@ export interface Entity {
   parts: readonly Entity[];
 }
 
+/** The model of an entity called model::link, and its link, which in a nested model is called nested::link. */
+export function splitEntity(name: string): { model: string; link: string | undefined } {
+  const end = name.indexOf("::");
+  return end < 0 ? { model: name, link: undefined } : { model: name.slice(0, end), link: name.slice(end + 2) };
+}
+
 /** Build the tree; `entities` are models by their names and links as model::link. */
 export function entityTree(entities: readonly string[], models: readonly ModelParts[]): Entity[] {
   return entities

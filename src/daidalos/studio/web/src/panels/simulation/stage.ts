@@ -18,11 +18,13 @@ import GRID from "../../displays/types/grid";
 import { markerObject } from "../../displays/marker_shapes";
 import type { Pose } from "../../generated/geometry_msgs";
 import type { Marker } from "../../generated/visualization_msgs";
-import { FirstView, type Content } from "../../scene/first_view";
+import { FirstView } from "../../scene/first_view";
+import type { Content } from "../../scene/framing";
 import { DAYLIGHT } from "../../scene/looks";
+import { RobotPin } from "../../scene/robot_pin";
 import { Viewport } from "../../scene/viewport";
 import type { GetShapes_Response, ModelParts } from "../../generated/daidalos_msgs";
-import { entityTree, type Entity } from "./entity_tree";
+import { entityTree, splitEntity, type Entity } from "./entity_tree";
 import type { EntityStates } from "./simulator";
 
 /** A flatter and larger shape is the ground, which the grid represents. */
@@ -63,6 +65,7 @@ export class Stage {
   /** Of the selected model. */
   radius = 0;
   private readonly first: FirstView;
+  private readonly pin: RobotPin;
   private isFramed = false;
 
   constructor(
@@ -71,6 +74,7 @@ export class Stage {
   ) {
     this.viewport = new Viewport(container);
     this.first = new FirstView(this.viewport.view, () => this.content());
+    this.pin = new RobotPin(container, this.viewport);
     const grid = GRID.create({ ...context, invalidate: this.viewport.invalidate }, GRID.defaults);
     this.viewport.look = DAYLIGHT;
     this.frame.visible = false;
@@ -117,7 +121,7 @@ export class Stage {
     const seen = new Set<string>();
     names.forEach((name, i) => {
       const pose = poses[i] as Pose;
-      const [model = "", link] = name.split("::");
+      const { model, link } = splitEntity(name);
       const shown = this.models.get(model);
       seen.add(model);
       known &&= shown !== undefined;
@@ -142,12 +146,18 @@ export class Stage {
 
   /** Centre the view on a model or a link. */
   focusOn(entity: string): void {
-    const [model = "", link] = entity.split("::");
+    const centre = this.centreOf(entity);
+    if (centre) {
+      this.viewport.view.lookAt(centre);
+    }
+  }
+
+  /** The centre of what is drawn of a model or a link; of the model where there is no such link. */
+  centreOf(entity: string): Vector3 | undefined {
+    const { model, link } = splitEntity(entity);
     const shown = this.models.get(model);
     const box = shown ? new Box3().setFromObject((link && shown.links.get(link)) || shown.holder) : new Box3();
-    if (!box.isEmpty()) {
-      this.viewport.view.lookAt(box.getCenter(new Vector3()));
-    }
+    return box.isEmpty() ? undefined : box.getCenter(new Vector3());
   }
 
   /** The last pose of a model from the simulator. */
@@ -250,9 +260,12 @@ export class Stage {
     this.first.update(page, this.viewport.aspect);
     this.viewport.lights.follow(view.focus, view.reach);
     this.viewport.frame(page);
+    const robot = this.robot();
+    this.pin.update(boxOf(robot), robot?.name ?? "");
   }
 
   dispose(): void {
+    this.pin.dispose();
     for (const shown of this.models.values()) {
       this.drop(shown);
     }
@@ -306,7 +319,7 @@ export class Stage {
       if (isGround(marker)) {
         continue;
       }
-      const link = marker.header.frame_id.split("::")[1] ?? "";
+      const link = splitEntity(marker.header.frame_id).link ?? "";
       const group = shown.links.get(link) ?? new Group();
       const object = this.objectOf(marker);
       if (object) {
@@ -326,9 +339,8 @@ export class Stage {
     this.touch();
   }
 
-  /** The box around all models, and around the first that can move and has joints: the robot. */
+  /** The box around all models, and around the robot. */
   private content(): Content {
-    const boxOf = (shown: Shown | undefined) => (shown ? new Box3().setFromObject(shown.holder) : new Box3());
     const all = new Box3();
     for (const shown of this.models.values()) {
       all.union(boxOf(shown));
@@ -336,9 +348,22 @@ export class Stage {
     if (all.isEmpty() && this.models.size) {
       all.copy(BARE_WORLD);
     }
-    const robot = this.parts.find(({ is_static, joints }) => !is_static && joints.length > 0)?.name ?? "";
-    return { all, robot: boxOf(this.models.get(robot)) };
+    return {
+      all,
+      robot: boxOf(this.robot()),
+      sees: (from, to, within) => this.viewport.sees(from, to, within),
+    };
   }
+
+  /** The first model that can move and has joints. */
+  private robot(): Shown | undefined {
+    const robot = this.parts.find(({ is_static, joints }) => !is_static && joints.length > 0);
+    return robot && this.models.get(robot.name);
+  }
+}
+
+function boxOf(shown: Shown | undefined): Box3 {
+  return shown ? new Box3().setFromObject(shown.holder) : new Box3();
 }
 
 /** What is shown of a world that has nothing but its ground. */
