@@ -58,7 +58,7 @@ def test_a_topic_of_the_same_name_needs_no_bridge(graph):  # noqa: F811
     bridge.destroy_node()
 
 
-def test_a_stamped_command_reaches_a_simulator_that_takes_it_unstamped(node):  # noqa: F811
+def test_a_stamped_command_reaches_a_simulator_that_takes_it_unstamped(node, capfd):  # noqa: F811
     received = threading.Event()
     speeds = []
 
@@ -76,6 +76,9 @@ def test_a_stamped_command_reaches_a_simulator_that_takes_it_unstamped(node):  #
         assert received.wait(5.0)
     assert speeds == [0.25]
     bridge.destroy_node()
+    assert not [
+        line for line in capfd.readouterr().err.splitlines() if "Incompatible" in line and "ros_gz_bridge" in line
+    ]
 
 
 def test_a_simulators_publisher_of_another_type_that_comes_later_is_converted(node):  # noqa: F811

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -126,25 +127,51 @@ class ParameterBridge(Node):
 
     def _forward_to_ros(self, bridge: Bridge, gz_side_type: str, convert: Converter | None = None) -> None:
         overrides = QoSOverridingOptions(_OVERRIDABLE) if convert is None else None
+        on_other_type = self._on_other_type(bridge, convert)
         publisher = self.create_publisher(
-            message_class(bridge.ros_type), bridge.ros_topic, 10, qos_overriding_options=overrides
+            message_class(bridge.ros_type),
+            bridge.ros_topic,
+            10,
+            qos_overriding_options=overrides,
+            event_callbacks=PublisherEventCallbacks(incompatible_type=on_other_type),
         )
         self._own.add(publisher.handle.endpoint.gid)
         take = _forwarding_callback(publisher, self._own, convert)
         subscription = self._gz_side.create_subscription(
-            message_class(gz_side_type), simulator_topic(bridge.gz_topic), take, 10
+            message_class(gz_side_type),
+            simulator_topic(bridge.gz_topic),
+            take,
+            10,
+            event_callbacks=SubscriptionEventCallbacks(incompatible_type=on_other_type),
         )
         self._own.add(subscription.handle.endpoint.gid)
 
     def _forward_to_gz(self, bridge: Bridge, gz_side_type: str, convert: Converter | None = None) -> None:
         overrides = QoSOverridingOptions(_OVERRIDABLE) if convert is None else None
-        publisher = self._gz_side.create_publisher(message_class(gz_side_type), simulator_topic(bridge.gz_topic), 10)
+        on_other_type = self._on_other_type(bridge, convert)
+        publisher = self._gz_side.create_publisher(
+            message_class(gz_side_type),
+            simulator_topic(bridge.gz_topic),
+            10,
+            event_callbacks=PublisherEventCallbacks(incompatible_type=on_other_type),
+        )
         self._own.add(publisher.handle.endpoint.gid)
         take = _forwarding_callback(publisher, self._own, convert)
         subscription = self.create_subscription(
-            message_class(bridge.ros_type), bridge.ros_topic, take, 10, qos_overriding_options=overrides
+            message_class(bridge.ros_type),
+            bridge.ros_topic,
+            take,
+            10,
+            qos_overriding_options=overrides,
+            event_callbacks=SubscriptionEventCallbacks(incompatible_type=on_other_type),
         )
         self._own.add(subscription.handle.endpoint.gid)
+
+    def _on_other_type(self, bridge: Bridge, convert: Converter | None) -> Callable[[Any], None] | None:
+        """Return what to do about another type on a topic: a warning, or nothing where two types share one name."""
+        if convert is None or self.resolve_topic_name(bridge.ros_topic) != simulator_topic(bridge.gz_topic):
+            return None
+        return lambda _: None
 
     def destroy_node(self) -> None:
         """Destroy the node, and its publishers and subscriptions on both sides."""
