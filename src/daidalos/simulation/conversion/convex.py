@@ -6,7 +6,6 @@ import hashlib
 import itertools
 import logging
 import os
-import sys
 import tempfile
 import zipfile
 import zlib
@@ -16,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from daidalos.common.cache_folder import cache_folder
 from daidalos.description.meshes import TriangleMesh
 from daidalos.simulation.conversion import decomposition
 from daidalos.simulation.conversion.decomposition import check_cancelled
@@ -135,18 +135,6 @@ def content_key(mesh: TriangleMesh) -> str:
     digest = hashlib.sha256(np.ascontiguousarray(mesh.vertices, dtype=np.float32).tobytes())
     digest.update(np.ascontiguousarray(mesh.faces, dtype=np.int32).tobytes())
     return digest.hexdigest()[:24]
-
-
-def cache_folder() -> Path:
-    """Return the cache folder: ``DAIDALOS_CACHE``, else the system's."""
-    chosen = os.environ.get("DAIDALOS_CACHE")
-    if chosen:
-        return Path(chosen)
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "daidalos"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "daidalos"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "daidalos"
 
 
 def hull_of_points(vertices: np.ndarray) -> TriangleMesh:
