@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -76,6 +77,26 @@ def read_text(path: Path | str) -> str:
 def read_yaml(path: Path | str) -> Any:
     """Return the content of a YAML file; see `parse_yaml` and `read_text`."""
     return parse_yaml(read_text(path), str(path))
+
+
+def parse_json(text: str, source: str | None = None) -> Any:
+    """Return the content of a JSON document.
+
+    Raises
+    ------
+    DocumentError
+        When it is not valid, is nested too deeply, or holds a number that is none or far too long.
+    """
+    try:
+        return json.loads(text, parse_constant=_refuse_constant)
+    except json.JSONDecodeError as error:
+        raise DocumentError(f"is not valid JSON: {error.msg}", source, error.lineno, error.colno) from None
+    except (ValueError, RecursionError) as error:
+        raise DocumentError(f"is not valid JSON: {error}", source) from None
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is not a number of JSON")
 
 
 def parse_yaml(text: str, source: str | None = None, loader: Any = None, *, aliases: bool = True) -> Any:

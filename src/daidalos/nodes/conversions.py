@@ -232,4 +232,5 @@ def cloud_data(cloud: Any, transform: Any) -> CloudData:
     q, offset = transform.rotation, transform.translation
     sensor = np.array([offset.x, offset.y, offset.z])
     points = read_points_numpy(cloud, ["x", "y", "z"]).reshape(-1, 3).astype(np.float64)
-    return CloudData(points @ rotation_matrix((q.x, q.y, q.z, q.w)).T + sensor, sensor)
+    rotation = rotation_matrix((q.x, q.y, q.z, q.w))
+    return CloudData(points @ rotation.T + sensor, sensor, rotation)

@@ -7,7 +7,7 @@ at run time on. `warn_of_undeclared` names given parameters that nothing declare
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from dataclasses import replace as with_changes
 from difflib import get_close_matches
@@ -163,9 +163,13 @@ def given_below(node: Node, group: str) -> list[str]:
     return [name.removeprefix(f"{group}.") for name in node._parameter_overrides if name.startswith(f"{group}.")]
 
 
-def declare_given(node: Node) -> None:
-    """Declare all parameters that are given to a node and not declared, with the types of their values."""
-    given = [(name, one.value) for name, one in node._parameter_overrides.items() if not node.has_parameter(name)]
+def declare_given(node: Node, names: Collection[str] | None = None) -> None:
+    """Declare the parameters that are given to a node and not declared, or those of some names among them."""
+    given = [
+        (name, one.value)
+        for name, one in node._parameter_overrides.items()
+        if not node.has_parameter(name) and (names is None or name in names)
+    ]
     node.declare_parameters("", given, ignore_override=True)
 
 

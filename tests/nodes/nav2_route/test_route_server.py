@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from daidalos.nodes.conversions import path_array, pose_stamped
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message
 from daidalos.nodes.nav2_route.route_server import RouteServer
 from navigation.routes.graphs import square, write
+from nodes.hostile_values import TEXTS, hostile_pose
 from nodes.stepped import LATCHED, Stage
 
 pytestmark = pytest.mark.timeout(300)
@@ -251,3 +253,24 @@ def test_another_goal_replaces_the_first(stage: SetStage, tmp_path: Path) -> Non
     assert (status, result.error_msg) == (GoalStatus.STATUS_ABORTED, "replaced by another goal")
     bench.drive((4.0, 0.0))
     assert bench.stage.end(second)[0] == GoalStatus.STATUS_SUCCEEDED
+
+
+@pytest.mark.slow
+def test_goals_and_requests_of_any_content_are_answered(stage: SetStage, tmp_path: Path) -> None:
+    bench, source = Bench(stage, tmp_path), random.Random(1)
+    for number in range(120):
+        bench.stage.call(SetRouteGraph, "/route_server/set_route_graph", graph_filepath=source.choice(TEXTS))
+        goal = {
+            "start_id": source.randrange(2**16), "goal_id": source.randrange(2**16),
+            "start": hostile_pose(source, bench.pose(0.0, 0.0)), "goal": hostile_pose(source, bench.pose(0.0, 0.0)),
+            "use_start": source.random() < 0.5, "use_poses": source.random() < 0.7,
+        }  # fmt: skip
+        status, result = bench.compute(**goal)
+        if status == GoalStatus.STATUS_SUCCEEDED:
+            assert np.isfinite(path_array(result.path)).all(), (number, goal)
+            assert goal["use_poses"], (number, goal)
+        else:
+            assert result.error_code != ComputeRoute.Result.NONE, (number, goal)
+            assert 0 < len(result.error_msg) < 7000, (number, goal)
+    status, result = bench.compute(start_id=0, goal_id=2)
+    assert (status, result.error_code) == (GoalStatus.STATUS_SUCCEEDED, 0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.nodes.conversions import pose2_of, pose_stamped
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message
 from daidalos.nodes.opennav_docking._docking_server import DockingServer
+from nodes.hostile_values import TEXTS, hostile_pose
 from nodes.stepped import LATCHED, Stage
 
 pytestmark = [pytest.mark.usefixtures("compiled"), pytest.mark.timeout(300)]
@@ -261,3 +263,24 @@ def test_an_unknown_type_fails_the_configuration(stage: SetStage, capfd: pytest.
     server = stage({"/docking_server": {"dock_plugins": ["dock"], "dock": dock}}).add(DockingServer())
     assert server.trigger_configure() == TransitionCallbackReturn.FAILURE
     assert "did you mean 'opennav_docking::SimpleChargingDock'" in capfd.readouterr().err
+
+
+@pytest.mark.slow
+def test_goals_and_requests_of_any_content_are_answered_and_move_nothing(stage: SetStage) -> None:
+    bench, source = Bench(stage), random.Random(1)
+    for number in range(60):
+        bench.stage.call(ReloadDockDatabase, "/docking_server/reload_database", filepath=source.choice(TEXTS))
+        goal = {
+            "use_dock_id": source.random() < 0.3, "dock_id": source.choice(TEXTS), "dock_type": source.choice(TEXTS),
+            "dock_pose": hostile_pose(source, pose_stamped(HOME, "map", bench.stage.stamp)),
+            "max_staging_time": source.choice((math.nan, math.inf, -1.0, 0.0)),
+            "navigate_to_staging_pose": source.random() < 0.5,
+        }  # fmt: skip
+        status, result = bench.end(bench.send(**goal))
+        assert (status, result.success) == (GoalStatus.STATUS_ABORTED, False), (number, goal)
+        assert 0 < len(result.error_msg) < 7000, (number, goal)
+        time = source.choice((math.nan, math.inf, -1.0))
+        bench.end(bench.stage.send(UndockRobot, "undock_robot", dock_type="none", max_undocking_time=time))
+        assert np.isfinite(np.array(bench.robot.commands or [[0.0]])).all()
+    assert bench.robot.pose == pytest.approx(np.zeros(3))
+    assert bench.end(bench.send())[1].success

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException, TransformListener
 
@@ -19,6 +20,7 @@ from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import compose, inverse
 from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.errors import IndeterminateNodes
 from daidalos.navigation.extensions import EDGE_SCORERS, GRAPH_FILE_LOADERS, ROUTE_OPERATIONS
 from daidalos.navigation.routes.contracts import EdgeScorer, GraphFileLoader, RouteExtension, RouteRequest
 from daidalos.navigation.routes.costs import RouteCosts
@@ -249,8 +251,10 @@ class RouteServer(ManagedNode):
         return self._pose_in_route_frame(self._settings.base_frame, timeout=self._settings.data_timeout)
 
     def _given(self, stamped: Any) -> Array:
-        """Return a ``PoseStamped`` of a request in the frame of routes."""
+        """Return a ``PoseStamped`` of a request in the frame of routes; IndeterminateNodes where it is not finite."""
         frame, pose = stamped.header.frame_id, pose2_of(stamped.pose)
+        if not np.isfinite(pose).all():
+            raise IndeterminateNodes("a pose of the goal is not finite")
         return pose if frame in ("", self._settings.route_frame) else compose(self._pose_in_route_frame(frame), pose)
 
     # Routes.

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from daidalos.common.documents import DocumentError, read_text
+from daidalos.common.documents import DocumentError, parse_json, read_text
 from daidalos.common.errors import Location
 from daidalos.common.suggestions import hint
 from daidalos.navigation.errors import NoValidGraph
@@ -47,11 +47,9 @@ class _Reader:
 
     def graph(self) -> RouteGraph:
         try:
-            document = json.loads(self._text, parse_constant=_refuse_constant)
-        except json.JSONDecodeError as error:
-            raise NoValidGraph(f"is not valid JSON: {error.msg}", Location(self._file, error.lineno)) from None
-        except (ValueError, RecursionError) as error:
-            raise NoValidGraph(f"is not valid JSON: {error}", Location(self._file)) from None
+            document = parse_json(self._text, self._file)
+        except DocumentError as error:
+            raise NoValidGraph(error.problem, error.location) from None
         features = document.get("features") if isinstance(document, dict) else None
         if not isinstance(features, list):
             raise NoValidGraph("has no list 'features', expected a GeoJSON FeatureCollection", Location(self._file))
@@ -165,7 +163,3 @@ def _skip(text: str, at: int) -> int:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
-
-
-def _refuse_constant(name: str) -> Any:
-    raise ValueError(f"{name} is no number of JSON")
