@@ -24,6 +24,7 @@ from daidalos.navigation.costmap.observation import Observation
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
 from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
 from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid, SmacPlannerHybridParameters
+from daidalos.navigation.planners.smac_planner_lattice import SmacPlannerLattice, SmacPlannerLatticeParameters
 from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 from daidalos.navigation.smoothers.simple_smoother import SimpleSmoother
 
@@ -83,6 +84,11 @@ def _plan_with_curves(costmap: Costmap) -> None:
         planner.create_plan(costmap, POSE, GOAL)
 
 
+def _plan_over_lattice(costmap: Costmap) -> None:
+    driven = SmacPlannerLatticeParameters(lookup_table_size=1.0)
+    SmacPlannerLattice(driven, NavigationContext(footprint=OUTLINE)).create_plan(costmap, POSE, GOAL)
+
+
 def _follow_with_mppi(costmap: Costmap) -> None:
     """Run the controller with each of its critics to a far goal and to a near one."""
     outline = CostCritic(CostCriticParameters(consider_footprint=True))
@@ -123,6 +129,7 @@ _PARTS: dict[type, Callable[[Costmap], object]] = {
     ThetaStarPlanner: lambda costmap: ThetaStarPlanner().create_plan(costmap, POSE, GOAL),
     SmacPlanner2D: lambda costmap: SmacPlanner2D().create_plan(costmap, POSE, GOAL),
     SmacPlannerHybrid: _plan_with_curves,
+    SmacPlannerLattice: _plan_over_lattice,
     MppiController: _follow_with_mppi,
     DwbController: _follow_with_dwb,
     TebController: _follow_with_teb,

@@ -54,11 +54,15 @@ def backwards(path):
     model=st.sampled_from(["DUBIN", BOTH]),
     is_round=st.booleans(),
     radius=st.sampled_from([0.2, 0.4, 0.7]),
+    mode=st.sampled_from(["DEFAULT", "BIDIRECTIONAL", "ALL_DIRECTION"]),
 )
-def test_paths_can_be_driven_and_touch_nothing(seed, model, is_round, radius):
+def test_paths_can_be_driven_and_touch_nothing(seed, model, is_round, radius, mode):
     costmap, generator = cluttered(seed, boxes=5)
     start, goal = (random_pose(costmap, generator) for _ in range(2))
-    asked = planner(None if is_round else OUTLINE, motion_model_for_search=model, minimum_turning_radius=radius)
+    asked = planner(
+        None if is_round else OUTLINE, motion_model_for_search=model, minimum_turning_radius=radius,
+        goal_heading_mode=mode, coarse_search_resolution=6,
+    )  # fmt: skip
     try:
         path = asked.create_plan(costmap, start, goal)
     except PlannerError:
@@ -85,6 +89,28 @@ def test_on_free_ground_paths_are_about_the_shortest_curves(model):
         )
         assert 0.999 * 0.5 * least <= path_length(path) <= 1.15 * 0.5 * least
         assert np.allclose(path[-1], goal)
+
+
+def test_the_goal_may_be_met_at_other_headings():
+    start, goal = pose(1.0, 2.0), pose(3.0, 2.0, math.pi)
+    ends = {}
+    for mode in ("DEFAULT", "BIDIRECTIONAL", "ALL_DIRECTION"):
+        path = planner(goal_heading_mode=mode).create_plan(room(), start, goal)
+        assert np.allclose(path[-1, :2], goal[:2], atol=1e-6)
+        ends[mode] = path_length(path), abs(math.remainder(path[-1, 2], 2.0 * math.pi))
+    assert ends["DEFAULT"][1] == pytest.approx(math.pi)
+    assert ends["BIDIRECTIONAL"] == pytest.approx((2.0, 0.0), abs=1e-3)
+    assert ends["ALL_DIRECTION"] == pytest.approx((2.0, 0.0), abs=1e-3)
+    goal = pose(2.6, 2.55, 0.1)
+    lengths = [
+        path_length(
+            planner(goal_heading_mode="ALL_DIRECTION", coarse_search_resolution=coarse, smooth_path=False).create_plan(
+                room(), start, goal
+            )
+        )
+        for coarse in (1, 6, 72)
+    ]
+    assert lengths[0] <= lengths[1] + 1e-9 <= lengths[2] + 2e-9
 
 
 def test_errors():
@@ -195,7 +221,7 @@ def test_curves_to_the_goal_avoid_costs_unless_that_is_overridden():
 
 
 def test_estimates_are_kept_and_may_be_of_smaller_cells(monkeypatch):
-    from daidalos.navigation.planners import smac_planner_hybrid
+    from daidalos.navigation.planners import cost_to_go
 
     sizes = []
 
@@ -203,7 +229,7 @@ def test_estimates_are_kept_and_may_be_of_smaller_cells(monkeypatch):
         sizes.append(costs.shape)
         return costs_to_goal(costs, *rest)
 
-    monkeypatch.setattr(smac_planner_hybrid, "costs_to_goal", counted)
+    monkeypatch.setattr(cost_to_go, "costs_to_goal", counted)
     for parameters in ({}, {"downsample_obstacle_heuristic": False}, {"cache_obstacle_heuristic": True}):
         asked = planner(**parameters)
         for _ in range(2):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
+from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,8 @@ from nav_msgs.msg import Path
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
 
+from daidalos.navigation.planners.lattice_generation import LatticeOptions, generate_lattice
+from daidalos.navigation.planners.state_lattice import lattice_document
 from daidalos.nodes.conversions import grid_message, path_array, pose_stamped
 from daidalos.nodes.nav2_planner.planner_server import PlannerServer
 from daidalos.samples.fields import time_message
@@ -111,6 +115,32 @@ def test_a_path_leads_from_the_robot_through_the_gap(bench: Bench) -> None:
     assert result.planning_time.nanosec > 0
     bench.stage.step_until(lambda: bool(published))
     assert published == [result.path]
+
+
+def test_paths_over_a_state_lattice_of_a_file(stage: Callable[[dict[str, Any]], Stage], tmp_path: FilePath) -> None:
+    file = tmp_path / "lattice.json"
+    lattice = generate_lattice(LatticeOptions("diff", 0.2))
+    file.write_text(json.dumps(lattice_document(lattice, {}, "2026-01-01")))
+    given = {"plugin": "nav2_smac_planner/SmacPlannerLattice", "lattice_filepath": str(file), "rotation_penalty": 2.0}
+    bench = Bench(stage(changed("/planner_server", planner_plugins=["Lattice"], Lattice=given))).start(room())
+    status, result = bench.plan(goal=pose(1.5, 0.0, yaw=1.0), planner_id="Lattice")
+    assert (status, result.error_code, result.error_msg) == (GoalStatus.STATUS_SUCCEEDED, Result.NONE, "")
+    path = path_array(result.path)
+    assert path[0] == pytest.approx([-1.5, 1.0, 0.0], abs=1e-6)
+    assert path[-1] == pytest.approx([1.5, 0.0, 1.0], abs=1e-6)
+    assert path[np.argmin(np.abs(path[:, 0]))][1] < -1.0
+
+
+def test_a_file_of_a_lattice_that_is_not_there_fails_the_transition(
+    stage: Callable[[dict[str, Any]], Stage], capfd: pytest.CaptureFixture[str]
+) -> None:
+    given = {"plugin": "nav2_smac_planner::SmacPlannerLattice", "lattice_filepath": "/no/lattice.json"}
+    made = stage(changed("/planner_server", planner_plugins=["Lattice"], Lattice=given)).add(PlannerServer())
+    assert made.trigger_configure() == TransitionCallbackReturn.FAILURE
+    made.destroy_node()
+    printed = capfd.readouterr().err
+    assert "'lattice_filepath' names a file that cannot be used: /no/lattice.json: cannot be read: No such" in printed
+    assert "Traceback" not in printed
 
 
 def test_a_path_leads_through_poses(bench: Bench) -> None:

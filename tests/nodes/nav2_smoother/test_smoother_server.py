@@ -24,11 +24,15 @@ pytestmark = [pytest.mark.usefixtures("compiled"), pytest.mark.timeout(300)]
 Result = SmoothPath.Result
 PARAMETERS: dict[str, Any] = {
     "/smoother_server": {
-        "smoother_plugins": ["simple_smoother", "other"],
+        "smoother_plugins": ["simple_smoother", "other", "constrained"],
         "simple_smoother": {
             "plugin": "nav2_smoother::SimpleSmoother", "tolerance": 1e-10, "max_its": 1000, "do_refinement": True
         },
         "other": {"plugin": "nav2_smoother::SavitzkyGolaySmoother", "window_size": 5},
+        "constrained": {
+            "plugin": "nav2_constrained_smoother/ConstrainedSmoother", "w_smooth": 30.0, "minimum_turning_radius": 0.3,
+            "path_downsampling_factor": 2, "optimizer": {"max_iterations": 70, "fn_tol": 1e-15},
+        },
     },
 }  # fmt: skip
 
@@ -55,7 +59,7 @@ def corner(end: float = 2.0) -> list[tuple[float, float, float]]:
     return [*ahead, *((end, y, 1.57) for y in np.arange(1.0, 2.0, 0.05))]
 
 
-@pytest.mark.parametrize("name", ["", "other"])
+@pytest.mark.parametrize("name", ["", "other", "constrained"])
 def test_a_path_is_smoothed(stage: Callable[[dict[str, Any]], Stage], name: str) -> None:
     bench = Bench(stage(PARAMETERS))
     published = bench.stage.collect(Path, "plan_smoothed")
@@ -72,7 +76,7 @@ def test_a_path_is_smoothed(stage: Callable[[dict[str, Any]], Stage], name: str)
 @pytest.mark.parametrize(
     ("poses", "goal", "code", "reason"),
     [
-        (corner(), {"smoother_id": "Simple"}, Result.INVALID_SMOOTHER, "simple_smoother, other"),
+        (corner(), {"smoother_id": "Simple"}, Result.INVALID_SMOOTHER, "simple_smoother, other, constrained"),
         ([], {}, Result.INVALID_PATH, "empty"),
         (corner(end=3.2), {"check_for_collisions": True}, Result.SMOOTHED_PATH_IN_COLLISION, "obstacle"),
         (corner(), {"max_smoothing_duration": Duration(nanosec=1)}, Result.TIMEOUT, "longer than 1e-09 s"),

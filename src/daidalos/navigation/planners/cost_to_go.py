@@ -7,8 +7,42 @@ import math
 import numpy as np
 
 from daidalos.common.kernels import compiled
-from daidalos.navigation.costmap.costmap import MAX_NON_OBSTACLE, Costs
+from daidalos.navigation.costmap.costmap import MAX_NON_OBSTACLE, Costmap, Costs
 from daidalos.navigation.planners.search import Prices, pop, push
+from daidalos.navigation.planners.terminals import Cell
+
+
+class CostsToGoal:
+    """Costs to goals over cells as large as those of the costmap or twice as large, kept for the next plan or not.
+
+    Parameters
+    ----------
+    is_kept : bool
+        Whether the costs to a goal serve the next plan to it too, though the costmap may have changed.
+    is_downsampled : bool
+        Whether the cells are twice as large.
+    """
+
+    def __init__(self, *, is_kept: bool, is_downsampled: bool) -> None:
+        self._is_kept = is_kept
+        self.factor = 2 if is_downsampled else 1
+        self._last: tuple[object, Prices] | None = None
+
+    def compute(
+        self, costmap: Costmap, price: Prices, first: Cell, last: Cell, *, reach: float, margin: float
+    ) -> Prices:
+        """Return the costs of `costs_to_goal` in cells of the costmap, from the cell `first` to the cell `last`."""
+        key = (last, costmap.costs.shape, tuple(costmap.origin), price.tobytes(), reach)
+        if self._is_kept and self._last is not None and self._last[0] == key:
+            return self._last[1]
+        factor = self.factor
+        costs = cheapest_costs(costmap.costs, price, factor) if factor > 1 else costmap.costs
+        rest: Prices = factor * costs_to_goal(
+            costs, price, last[0] // factor, last[1] // factor, reach / factor, np.inf if self._is_kept else margin,
+            first[0] // factor, first[1] // factor,
+        )  # fmt: skip
+        self._last = key, rest
+        return rest
 
 
 @compiled

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.costmap.costmap import Costmap
 
@@ -37,3 +38,24 @@ def downsampled(costmap: Costmap, factor: int) -> Costmap:
     costs += np.uint8(1)  # unknown becomes the lowest
     blocks = costs.reshape(height, factor, width, factor).max(axis=(1, 3)) - np.uint8(1)
     return Costmap(blocks, costmap.resolution * factor, costmap.origin)
+
+
+@dataclass(frozen=True)
+class GoalHeadings(Parameters):
+    """Parameters of the headings at which paths of planners over poses may end, by their Nav2 names."""
+
+    goal_heading_mode: str = parameter(
+        "DEFAULT",
+        "Whether the path ends at the goal's heading, at this or its opposite, or at any.",
+        choices=("DEFAULT", "BIDIRECTIONAL", "ALL_DIRECTION"),
+    )
+    coarse_search_resolution: int = parameter(
+        1, "With any heading: how many headings on is the next that curves to the goal are tried to first.", minimum=1
+    )
+
+    def goals(self, goal: Array, headings: int) -> Array:
+        """Return the goal (3,) at each heading (n, 3) that the path may end at, of so many in a full turn."""
+        count = {"DEFAULT": 1, "BIDIRECTIONAL": 2}.get(self.goal_heading_mode, headings)
+        goals = np.repeat(goal[None], count, axis=0)
+        goals[:, 2] += 2.0 * np.pi * np.arange(count) / count
+        return goals

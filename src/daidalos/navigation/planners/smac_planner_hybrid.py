@@ -9,30 +9,21 @@ from typing import Any
 import numpy as np
 
 from daidalos.common.arrays import Array
-from daidalos.common.parameters import Parameters, group, parameter
+from daidalos.common.parameters import group, parameter
 from daidalos.navigation.contracts import GlobalPlanner, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.errors import GoalOccupied, NoPath, StartOccupied
-from daidalos.navigation.paths import is_driven_backwards, split_at_cusps
-from daidalos.navigation.planners.cost_to_go import cheapest_costs, costs_to_goal
-from daidalos.navigation.planners.hybrid_search import (
-    CORNER,
-    SPACING,
-    HybridOptions,
-    HybridSearch,
-    are_forbidden,
-    blended,
-    stands_free,
-)
+from daidalos.navigation.planners.cost_to_go import CostsToGoal
+from daidalos.navigation.planners.goal_curves import stands_free
+from daidalos.navigation.planners.hybrid_search import HybridOptions, HybridSearch
+from daidalos.navigation.planners.path_smoothing import smoothed
 from daidalos.navigation.planners.search import EXHAUSTED, FOUND, Prices, prices, run_search
-from daidalos.navigation.planners.smac_parameters import PathSmoothing, downsampled
-from daidalos.navigation.planners.terminals import Cell, goal_cell, start_cell, words
-from daidalos.navigation.smoothers.parts import smooth_parts
-from daidalos.navigation.smoothers.simple_smoother import relax
+from daidalos.navigation.planners.smac_parameters import GoalHeadings, PathSmoothing, downsampled
+from daidalos.navigation.planners.terminals import goal_cell, start_cell, words
 
 
 @dataclass(frozen=True)
-class SmacPlannerHybridParameters(Parameters):
+class SmacPlannerHybridParameters(GoalHeadings):
     """Parameters of the planner, by their Nav2 names."""
 
     downsample_costmap: bool = parameter(False, "Whether to search over larger cells.")
@@ -100,7 +91,16 @@ class SmacPlannerHybrid(GlobalPlanner):
     def __init__(self, parameters: Any = None, context: NavigationContext | None = None) -> None:
         super().__init__(parameters, context)
         self._table: tuple[Any, Prices] | None = None
-        self._rest: tuple[Any, Prices] | None = None
+        self._rest = self._kept_costs()
+
+    def reconfigure(self, parameters: Any) -> None:
+        """Implement `NavigationExtension.reconfigure`."""
+        super().reconfigure(parameters)
+        self._rest = self._kept_costs()
+
+    def _kept_costs(self) -> CostsToGoal:
+        p = self.parameters
+        return CostsToGoal(is_kept=p.cache_obstacle_heuristic, is_downsampled=p.downsample_obstacle_heuristic)
 
     def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:
         """Plan a path; see `GlobalPlanner.create_plan`."""
@@ -115,12 +115,14 @@ class SmacPlannerHybrid(GlobalPlanner):
         )
         if not stands_free(costmap.costs, price, polygon, *begin):
             raise StartOccupied(f"the robot at {words(start)} touches an obstacle, so that it is enclosed by it")
-        is_free = stands_free(costmap.costs, price, polygon, *end)
+        goals = p.goals(end, p.angle_quantization_bins)
+        is_free = any(stands_free(costmap.costs, price, polygon, *one) for one in goals)
         if not is_free and p.tolerance < costmap.resolution:
             raise GoalOccupied(f"the robot does not fit at the goal {words(goal)}")
         options = self._options(costmap.resolution)
-        rest, factor = self._costs_to_goal(costmap, price, first, last, options)
-        search = HybridSearch(costmap.costs, price, polygon, rest, factor, begin, end, options)
+        factor = self._rest.factor
+        rest = self._rest.compute(costmap, price, first, last, reach=options.reach, margin=4.0 * options.radius)
+        search = HybridSearch(costmap.costs, price, polygon, rest, factor, begin, goals, options)
         state = EXHAUSTED
         if np.isfinite(rest[first[1] // factor, first[0] // factor]):
             state = run_search(
@@ -137,7 +139,7 @@ class SmacPlannerHybrid(GlobalPlanner):
             )
         path = search.path()
         if p.smooth_path:
-            path = self._smoothed(path, costmap, price, polygon, options.radius)
+            path = smoothed(path, costmap.costs, price, polygon, options.radius, p.smoother, costmap.resolution)
         path[:, :2] = costmap.origin + (path[:, :2] + 0.5) * costmap.resolution
         path[:, 2] = np.remainder(path[:, 2] + np.pi, 2.0 * np.pi) - np.pi
         return path
@@ -154,48 +156,6 @@ class SmacPlannerHybrid(GlobalPlanner):
             radius, p.angle_quantization_bins, is_reverse_allowed, p.reverse_penalty, p.change_penalty,
             p.non_straight_penalty, p.retrospective_penalty, p.analytic_expansion_ratio,
             p.analytic_expansion_max_length / resolution, p.analytic_expansion_max_cost,
-            p.analytic_expansion_max_cost_override, p.allow_primitive_interpolation, p.tolerance / resolution,
-            p.max_on_approach_iterations, self._table[1],
+            p.analytic_expansion_max_cost_override, p.allow_primitive_interpolation, p.coarse_search_resolution,
+            p.tolerance / resolution,            p.max_on_approach_iterations, self._table[1],
         )  # fmt: skip
-
-    def _costs_to_goal(
-        self, costmap: Costmap, price: Prices, first: Cell, last: Cell, options: HybridOptions
-    ) -> tuple[Prices, int]:
-        """Return the estimated costs to the goal by obstacles, and the edge of their cells in those of the costmap."""
-        p = self.parameters
-        factor = 2 if p.downsample_obstacle_heuristic else 1
-        key = (last, costmap.costs.shape, tuple(costmap.origin), factor, self.parameters)
-        if p.cache_obstacle_heuristic and self._rest is not None and self._rest[0] == key:
-            return self._rest[1], factor
-        costs = cheapest_costs(costmap.costs, price, factor) if factor > 1 else costmap.costs
-        margin = np.inf if p.cache_obstacle_heuristic else 4.0 * options.radius
-        rest = factor * costs_to_goal(
-            costs, price, last[0] // factor, last[1] // factor, options.reach / factor, margin,
-            first[0] // factor, first[1] // factor,
-        )  # fmt: skip
-        self._rest = key, rest
-        return rest, factor
-
-    def _smoothed(self, path: Array, costmap: Costmap, price: Prices, polygon: Array, radius: float) -> Array:
-        """Smooth a path in cells within the turning radius; its ends stay, with their headings."""
-        s = self.parameters.smoother
-        window = max(round(2.0 * radius / SPACING), 2)
-        limit = (1.0 + 1e-6) / radius
-
-        def forbidden(points: Array) -> Any:
-            return are_forbidden(points, costmap.costs, price, polygon, is_backwards, limit)
-
-        def smooth(points: Array) -> Array:
-            relaxed = relax(
-                points, costmap.costs, 1.0, CORNER, s.w_data, s.w_smooth, s.tolerance / costmap.resolution**2,
-                s.max_iterations,
-            )  # fmt: skip
-            return blended(points, relaxed, window, forbidden)
-
-        parts = [path[:1]]
-        for part in split_at_cusps(path):
-            is_backwards = part.shape[0] > 1 and is_driven_backwards(part)
-            smoothed = smooth_parts(part, smooth, split=False, times=s.times)
-            smoothed[0, 2] = part[0, 2]
-            parts.append(smoothed[1:])
-        return np.concatenate(parts)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -57,10 +57,11 @@ class PlannerServerParameters(Parameters):
 class PlannerServer(ManagedNode):
     """Server of ``compute_path_to_pose``, ``compute_path_through_poses`` and ``is_path_valid``."""
 
-    def __init__(self, node_name: str = "planner_server", **kwargs: Any) -> None:
+    def __init__(self, node_name: str = "planner_server", costmap_arguments: Sequence[str] = (), **kwargs: Any) -> None:
+        """Create the server; ``costmap_arguments`` are those of ROS for its costmap's node alone."""
         super().__init__(node_name, **kwargs)
         self._settings = declare(self, PlannerServerParameters, reconfigure=self._reconfigure)
-        self._costmap = CostmapNode("global_costmap", self)
+        self._costmap = CostmapNode("global_costmap", self, costmap_arguments)
         self._contained = ContainedNode(self._costmap)
         self.add_managed_entity(self._contained)
         self._planners: dict[str, GlobalPlanner] = {}
