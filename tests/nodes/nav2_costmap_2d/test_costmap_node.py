@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from geometry_msgs.msg import PolygonStamped
+from geometry_msgs.msg import PolygonStamped, TransformStamped
 from nav2_msgs.msg import Costmap
 from nav2_msgs.srv import (
     ClearCostmapAroundPose,
@@ -22,7 +22,9 @@ from nav2_msgs.srv import (
 from nav_msgs.msg import OccupancyGrid
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
-from sensor_msgs.msg import LaserScan, Range
+from sensor_msgs.msg import LaserScan, PointCloud2, Range
+from sensor_msgs_py.point_cloud2 import create_cloud_xyz32, read_points_numpy
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from daidalos.nodes.conversions import grid_array, grid_message, pose_stamped, transform_stamped
@@ -299,6 +301,37 @@ def test_a_sonar_marks_what_it_measures(stage: Callable[[dict[str, Any]], Stage]
     publisher.publish(message)
     bench.step_until(lambda costmap: cost(costmap, 0.3 - 0.62, 0.0) == LETHAL)
     assert bench.server._costmap._missing_input() == ""
+
+
+def test_voxels_of_a_depth_camera_fade_sooner_where_it_looks(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    camera = {"topic": "/depth/points", "clearing": True, "decay_acceleration": 60.0, "obstacle_range": 3.0}
+    layer = {
+        "plugin": "spatio_temporal_voxel_layer/SpatioTemporalVoxelLayer", "voxel_decay": 15, "voxel_size": 0.05,
+        "publish_voxel_map": True, "observation_sources": "camera", "camera": camera,
+    }  # fmt: skip
+    bench = Bench(stage({NODE: {**ROLLING, "plugins": ["stvl"], "stvl": layer}})).start()
+    voxels = bench.stage.collect(PointCloud2, "/global_costmap/stvl/voxel_grid")
+    optical = TransformStamped(child_frame_id="depth")
+    optical.header.frame_id = "base_link"
+    optical.transform.translation.z = 0.4
+    q = optical.transform.rotation  # z ahead, x to the right
+    q.x, q.y, q.z, q.w = -0.5, 0.5, -0.5, 0.5
+    bench.stage.publish("/tf_static", TFMessage(transforms=[optical]), LATCHED)
+    clouds = bench.stage.node.create_publisher(PointCloud2, "/depth/points", 10)
+
+    def see(*points: tuple[float, float, float]) -> None:
+        clouds.publish(create_cloud_xyz32(Header(frame_id="depth", stamp=bench.stage.stamp), list(points)))
+
+    see((-0.1, 0.0, 1.0), (0.0, 0.0, 1.5))
+    bench.step_until(lambda costmap: cost(costmap, 1.0, 0.1) == cost(costmap, 1.5, 0.0) == LETHAL)
+    assert read_points_numpy(voxels[-1], ["x", "y", "z"])[:, 2] == pytest.approx([0.4, 0.4], abs=0.03)
+    for _ in range(30):
+        see((0.0, 0.0, 1.5))
+        bench.stage.step()
+    costmap = bench.step_until(lambda costmap: cost(costmap, 1.0, 0.1) == FREE)
+    assert cost(costmap, 1.5, 0.0) == LETHAL
+    bench.stage.step_for(1.0)
+    assert "'/depth/points' is" in bench.server._costmap._missing_input()
 
 
 def test_layers_in_a_container_have_parameters_and_topics_of_their_own(

@@ -1,7 +1,7 @@
 """Observations: rays of scans and point clouds in the frame of a costmap."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,15 +24,18 @@ class CloudData:
         Positions [m] in the frame of the base.
     sensor : ndarray, shape (3,)
         Position [m] of the sensor in that frame.
+    rotation : ndarray, shape (3, 3)
+        Axes of the sensor's frame in that frame, as columns.
     """
 
     points: Array
     sensor: Array
+    rotation: Array = field(default_factory=lambda: np.eye(3))
 
     def lifted(self, height: float) -> "CloudData":
         """Return the cloud of a sensor that is higher by so much [m]."""
         up = np.array([0.0, 0.0, height])
-        return CloudData(self.points + up, self.sensor + up)
+        return CloudData(self.points + up, self.sensor + up, self.rotation)
 
 
 @dataclass(frozen=True)

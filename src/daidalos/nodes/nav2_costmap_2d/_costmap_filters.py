@@ -11,6 +11,7 @@ from daidalos.common.errors import UserError
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.navigation.contracts import Input, Layer, Output, SpeedLimit
 from daidalos.navigation.costmap.costmap_filter import FilterInfo, FilterMask
+from daidalos.navigation.costmap.observation import CloudData
 from daidalos.nodes.conversions import grid_array, pose2_of
 from daidalos.nodes.qos import LATCHED
 
@@ -66,6 +67,8 @@ def _listen_to_mask(node: CostmapNode, listened: Input) -> Any:
 def output_publisher(node: CostmapNode, layer: Layer, output: Output) -> Callable[[], None]:
     """Return a function that publishes what an output of a layer gives, while the layer is enabled."""
     from nav2_msgs.msg import SpeedLimit as SpeedLimitMessage
+    from sensor_msgs.msg import PointCloud2
+    from sensor_msgs_py.point_cloud2 import create_cloud_xyz32
     from std_msgs.msg import Bool, Header
 
     def speed_limit(limit: SpeedLimit) -> Any:
@@ -75,12 +78,18 @@ def output_publisher(node: CostmapNode, layer: Layer, output: Output) -> Callabl
     def state(value: bool) -> Any:
         return Bool(data=value)
 
+    def cloud(value: CloudData) -> Any:
+        header = Header(frame_id=node.global_frame, stamp=node.get_clock().now().to_msg())
+        return create_cloud_xyz32(header, value.points)
+
     kinds: dict[type, tuple[Any, Callable[[Any], Any]]] = {
         SpeedLimit: (SpeedLimitMessage, speed_limit),
         bool: (Bool, state),
+        CloudData: (PointCloud2, cloud),
     }
     kind, message = kinds[output.type]
-    publisher = node.create_publisher(kind, node.outer_topic(output.topic), 10)
+    topic = output.topic if output.type is CloudData else node.outer_topic(output.topic)
+    publisher = node.create_publisher(kind, topic, 10)
 
     def publish() -> None:
         with node.lock:

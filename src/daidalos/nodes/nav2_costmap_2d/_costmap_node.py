@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -118,6 +118,8 @@ class CostmapNode(ManagedNode):
         Such as ``local_costmap``; the node is ``local_costmap/local_costmap``.
     parent : Node
         The server that the costmap is for.
+    arguments : sequence of str
+        Arguments of ROS for this node alone, after those of the process.
 
     Attributes
     ----------
@@ -130,7 +132,7 @@ class CostmapNode(ManagedNode):
         Why `robot_pose` was None the last time.
     """
 
-    def __init__(self, name: str, parent: Node) -> None:
+    def __init__(self, name: str, parent: Node, arguments: Sequence[str] = ()) -> None:
         self._outer_namespace = parent.get_namespace().rstrip("/")
         namespace = f"{self._outer_namespace}/{name}"
         sim_time = str(parent.get_parameter("use_sim_time").value).lower()
@@ -144,7 +146,7 @@ class CostmapNode(ManagedNode):
             context=parent.context,
             cli_args=[
                 "-r", f"{name}:__node:={name}", "-r", f"{name}:__ns:={namespace}", "-p", f"use_sim_time:={sim_time}",
-                *transforms,
+                *transforms, *arguments,
             ],
         )  # fmt: skip
         self.lock = threading.RLock()

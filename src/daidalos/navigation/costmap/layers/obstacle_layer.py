@@ -24,6 +24,7 @@ from daidalos.navigation.costmap.costmap import (
 )
 from daidalos.navigation.costmap.footprint import fill_polygon
 from daidalos.navigation.costmap.observation import CloudData, Observation
+from daidalos.navigation.costmap.source_ages import age_of_observations, missing_observation
 
 
 @dataclass(frozen=True)
@@ -161,28 +162,11 @@ class ObstacleLayer(Layer):
 
     def missing_input(self, now: float) -> str:
         """Return which sensor has observed nothing for its `expected_update_rate`."""
-        for name, source in self.parameters.sources.items():
-            limit = source.expected_update_rate
-            if limit <= 0.0:
-                continue
-            if name not in self._latest:
-                return f"there is no observation of '{source.topic or name}'"
-            age = now - self._latest[name]
-            if not -limit <= age <= limit:  # from the future where time was set back
-                return (
-                    f"the latest observation of '{source.topic or name}' is {age:.3g} s old, "
-                    f"longer than expected_update_rate {limit:g} s"
-                )
-        return ""
+        return missing_observation(self._latest, self.parameters.sources, now)
 
     def age_of_input(self, now: float) -> float:
         """Implement `Layer.age_of_input` by the sensors' `expected_update_rate`."""
-        ages = (
-            (now - self._latest.get(name, -np.inf)) / source.expected_update_rate
-            for name, source in self.parameters.sources.items()
-            if source.expected_update_rate > 0.0
-        )
-        return max(ages, default=0.0)
+        return age_of_observations(self._latest, self.parameters.sources, now)
 
     def match_size(self, costmap: Costmap) -> None:
         """Keep the observations that are still inside of the costmap."""
