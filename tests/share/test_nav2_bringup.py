@@ -27,6 +27,7 @@ ALWAYS = {
     [
         ("planner_server: {ros__parameters: {}}", "", set()),
         ("docking_server:\n  ros__parameters: {dock_plugins: []}", "", {"opennav_docking"}),
+        ("following_server:\n  ros__parameters: {}", "", {"opennav_following"}),
         ("robot:\n  route_server: {ros__parameters: {}}", "", {"route_server"}),
         ("/robot/docking_server:\n  ros__parameters: {}", "", {"opennav_docking"}),
         ("bt_navigator:\n  ros__parameters: {docking_server_name: x}", "", set()),

@@ -1,7 +1,7 @@
 """The navigation stack, each server in a process or all in a container.
 
 Commands of the controller and the behaviours go through the velocity smoother and the collision monitor to `cmd_vel`.
-The docking server and the route server are started where the parameter file has something for them.
+The docking, following and route servers are started where the parameter file has something for them.
 """
 
 import re
@@ -28,9 +28,10 @@ SERVERS = [
     ("nav2_bt_navigator", "bt_navigator", "nav2_bt_navigator::BtNavigator", []),
     ("nav2_waypoint_follower", "waypoint_follower", "nav2_waypoint_follower::WaypointFollower", []),
     ("opennav_docking", "docking_server", "opennav_docking::DockingServer", []),
+    ("opennav_following", "following_server", "opennav_following::FollowingServer", COMMANDS),
 ]
-OPTIONAL = ("route_server", "docking_server")
-EXECUTABLES = {"docking_server": "opennav_docking"}
+OPTIONAL = ("route_server", "docking_server", "following_server")
+EXECUTABLES = {"docking_server": "opennav_docking", "following_server": "opennav_following"}
 MANAGER = ("nav2_lifecycle_manager", "lifecycle_manager", "nav2_lifecycle_manager::LifecycleManager")
 ARGUMENTS = [
     ("namespace", "", "namespace of all nodes"),

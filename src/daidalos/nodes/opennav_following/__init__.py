@@ -1,0 +1,3 @@
+"""Server that follows objects."""
+
+COMPONENTS = {"FollowingServer": "_following_server:FollowingServer"}
