@@ -28,6 +28,7 @@ from daidalos.navigation.paths import path_length
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
 from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
 from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid, SmacPlannerHybridParameters
+from daidalos.navigation.planners.smac_planner_lattice import SmacPlannerLattice
 from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -75,7 +76,7 @@ def measure_planner() -> dict[str, float | str]:
 
 
 def measure_planners() -> dict[str, float | str]:
-    """NavFn on a million cells, Hybrid-A* on 147,000 cells and on a path of 75 m; goals of 15, 20 and 60 ms."""
+    """NavFn on a million cells, the others on 147,000 and on a path of 75 m; goals of 15, 20 and 60 ms."""
     results: dict[str, float | str] = {}
     hybrid = SmacPlannerHybrid(SmacPlannerHybridParameters(motion_model_for_search="REEDS_SHEPP"))
     for name, height, width, planner in (
@@ -84,6 +85,8 @@ def measure_planners() -> dict[str, float | str]:
         ("smac_2d_147k", 380, 387, SmacPlanner2D()),
         ("smac_hybrid_dubins_147k", 380, 387, SmacPlannerHybrid()),
         ("smac_hybrid_reeds_shepp_147k", 380, 387, hybrid),
+        ("smac_lattice_147k", 380, 387, SmacPlannerLattice()),
+        ("smac_lattice_75m", 1000, 1100, SmacPlannerLattice()),
         ("smac_hybrid_dubins_75m", 1000, 1100, SmacPlannerHybrid()),
         ("smac_hybrid_reeds_shepp_75m", 1000, 1100, hybrid),
     ):

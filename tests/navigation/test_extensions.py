@@ -8,10 +8,13 @@ from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic,
 from daidalos.navigation.controllers.mppi_controller import CriticSwitch, MppiController, MppiParameters
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
 from daidalos.navigation.controllers.rotation_shim_controller import RotationShimController
+from daidalos.navigation.costmap.layers.spatio_temporal_voxel_layer import SpatioTemporalVoxelLayer
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
 from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
 from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid
+from daidalos.navigation.planners.smac_planner_lattice import SmacPlannerLattice
 from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
+from daidalos.navigation.smoothers.constrained_smoother import ConstrainedSmoother
 
 
 @pytest.mark.parametrize("separator", ["::", "/"])
@@ -21,11 +24,23 @@ from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
         ("nav2_navfn_planner", NavfnPlanner),
         ("nav2_smac_planner", SmacPlanner2D),
         ("nav2_smac_planner", SmacPlannerHybrid),
+        ("nav2_smac_planner", SmacPlannerLattice),
         ("nav2_theta_star_planner", ThetaStarPlanner),
     ],
 )
 def test_both_spellings_are_found(package, planner, separator):
     assert find(extensions.PLANNERS, f"{package}{separator}{planner.__name__}") is planner
+
+
+@pytest.mark.parametrize("separator", ["::", "/"])
+def test_smoothers_are_found(separator):
+    assert find(extensions.SMOOTHERS, f"nav2_constrained_smoother{separator}ConstrainedSmoother") is ConstrainedSmoother
+
+
+@pytest.mark.parametrize("separator", ["::", "/"])
+def test_layers_of_other_packages_are_found(separator):
+    name = f"spatio_temporal_voxel_layer{separator}SpatioTemporalVoxelLayer"
+    assert find(extensions.COSTMAP_LAYERS, name) is SpatioTemporalVoxelLayer
 
 
 def test_critics_need_no_namespace():

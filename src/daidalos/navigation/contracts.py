@@ -448,7 +448,7 @@ class Output:
     topic : str
         Its topic.
     type : type
-        `SpeedLimit` or `bool`.
+        `SpeedLimit`, `bool`, or `CloudData` in the costmap's frame, whose topic stands beside those of the costmap.
     give : callable
         Called after each update of the costmap; returns what is published, or None.
     """

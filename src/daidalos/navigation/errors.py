@@ -206,3 +206,9 @@ class FailedToCharge(DockingError):
     """Dock that does not charge."""
 
     code = "FAILED_TO_CHARGE"
+
+
+class FailedToDetectObject(NavigationError):
+    """Object to follow that is not seen."""
+
+    code = "FAILED_TO_DETECT_OBJECT"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -89,10 +90,13 @@ class ControllerServerParameters(Parameters):
 class ControllerServer(ManagedNode):
     """Server of ``follow_path`` that publishes ``cmd_vel``."""
 
-    def __init__(self, node_name: str = "controller_server", **kwargs: Any) -> None:
+    def __init__(
+        self, node_name: str = "controller_server", costmap_arguments: Sequence[str] = (), **kwargs: Any
+    ) -> None:
+        """Create the server; ``costmap_arguments`` are those of ROS for its costmap's node alone."""
         super().__init__(node_name, **kwargs)
         self._settings = declare(self, ControllerServerParameters, reconfigure=self._reconfigure)
-        self._costmap = CostmapNode("local_costmap", self)
+        self._costmap = CostmapNode("local_costmap", self, costmap_arguments)
         self._contained = ContainedNode(self._costmap)
         self.add_managed_entity(self._contained)
         self._plugins: dict[str, dict[str, Any]] = {}
