@@ -1,0 +1,137 @@
+"""`daidalos rapid`: programs of ABB robots."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from daidalos.common.errors import UserError
+
+
+class RapidVerb:
+    """Check, format and run programs of ABB robots."""
+
+    def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments of `daidalos rapid`."""
+        commands = parser.add_subparsers(title="commands", required=True, metavar="check | format | run | server")
+        check = commands.add_parser("check", help="find errors; exit status 0 without errors, else 2")
+        check.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
+        check.add_argument("--json", action="store_true", help="print a list of files with their errors")
+        check.add_argument(
+            "--io",
+            type=Path,
+            action="append",
+            default=[],
+            metavar="EIO.cfg",
+            help="configuration that declares signals",
+        )
+        check.set_defaults(_command=_check)
+        format_ = commands.add_parser("format", help="indent modules and put one instruction on a line")
+        format_.add_argument("path", nargs="+", type=Path, help="a module, a program file (.pgf) or a folder")
+        format_.add_argument("--check", action="store_true", help="write nothing; exit status 1 if a file would change")
+        format_.add_argument("--diff", action="store_true", help="write nothing; print what would change")
+        format_.set_defaults(_command=_format)
+
+        run = commands.add_parser("run", help="run a program; exit status 0 at its end, 2 after an error")
+        run.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
+        run.add_argument("--task", metavar="NAME", help="which program of a folder, such as T_ROB1")
+        run.add_argument("--proc", default="main", metavar="NAME", help="procedure to run (default: main)")
+        run.add_argument("--fast", action="store_true", help="do not let real time pass with the robot's")
+        run.add_argument("--save", action="store_true", help="write the values of persistents back into the modules")
+        run.add_argument(
+            "--io",
+            type=Path,
+            action="append",
+            default=[],
+            metavar="EIO.cfg",
+            help="configuration that declares signals",
+        )
+        run.add_argument(
+            "--signal", action="append", default=[], metavar="NAME=VALUE", help="value that a signal begins with"
+        )
+        run.add_argument(
+            "--home", type=Path, metavar="FOLDER", help="folder that HOME: stands for (default: that of the program)"
+        )
+        run.add_argument("--max-time", type=float, metavar="S", help="end after so many seconds of robot time")
+        run.set_defaults(_command=_run)
+
+        server = commands.add_parser("server", help="language server for editors, on standard input and output")
+        server.set_defaults(_command=_serve)
+
+    def main(self, *, args: argparse.Namespace) -> int:
+        """Run the command."""
+        status: int = args._command(args)
+        return status
+
+
+def _check(args: argparse.Namespace) -> int:
+    from daidalos.industry.rapid.inspection import inspect, read_signals
+
+    signals = [name for file in args.io for name in read_signals(file)]
+    reports = inspect(args.path, signals)
+    errors = sum(len(report.errors) for report in reports)
+    warnings = sum(len(report.warnings) for report in reports)
+    if args.json:
+        print(json.dumps([report.as_json() for report in reports], indent=1))
+    else:
+        for report in reports:
+            for problem in sorted((*report.errors, *report.warnings)):
+                print(problem.text(report.file))
+        print(
+            f"{_count(len(reports), 'file')}, {_count(errors, 'error')}, {_count(warnings, 'warning')}", file=sys.stderr
+        )
+    return 2 if errors else 0
+
+
+def _format(args: argparse.Namespace) -> int:
+    from daidalos.industry.rapid.formatting import format_source
+    from daidalos.industry.rapid.sources import find_programs, read_source, write_source
+
+    changed = failed = 0
+    paths = [file for path in args.path for program in find_programs(path) for file in program.files]
+    for path in dict.fromkeys(paths):
+        try:
+            source = read_source(path)
+            text = format_source(source)
+        except UserError as error:
+            print(f"error: {error}", file=sys.stderr)
+            failed += 1
+            continue
+        if text == source.text:
+            continue
+        changed += 1
+        if args.diff:
+            sys.stdout.writelines(_diff(str(path), source.text, text))
+        elif args.check:
+            print(f"would format {path}")
+        else:
+            write_source(path, text, source.encoding)
+            print(f"formatted {path}")
+    return 2 if failed else int(changed > 0 and args.check)
+
+
+def _run(args: argparse.Namespace) -> int:
+    from daidalos.cli.daidalos.rapid_run import run_program
+
+    return run_program(args)
+
+
+def _serve(args: argparse.Namespace) -> int:
+    from daidalos.industry.rapid.editing.server import serve
+
+    serve()
+    return 0
+
+
+def _diff(name: str, before: str, after: str) -> Iterator[str]:
+    old, new = (text.splitlines(keepends=True) for text in (before, after))
+    for line in difflib.unified_diff(old, new, name, name):
+        yield line if line.endswith("\n") else f"{line}\n"
+
+
+def _count(number: int, word: str) -> str:
+    return f"{number} {word}{'' if number == 1 else 's'}"

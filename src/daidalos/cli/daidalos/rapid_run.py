@@ -1,0 +1,133 @@
+"""`daidalos rapid run`: a program on this terminal, at the pace of real time or as fast as it can."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import threading
+import time
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+from daidalos.cli.daidalos.launching import INTERRUPTED
+from daidalos.common.errors import UserError
+
+if TYPE_CHECKING:
+    from daidalos.industry.rapid.runtime.task import Outcome, Task
+
+ENDLESS_S = 2.0
+"""Seconds without motion, waiting or output after which a loop is named."""
+
+
+def run_program(args: argparse.Namespace) -> int:
+    """Load and run a program; return 0 at its end, 2 after an error, 130 after Ctrl-C."""
+    from daidalos.industry.rapid.inspection import read_signals
+    from daidalos.industry.rapid.runtime.board import Board
+    from daidalos.industry.rapid.runtime.errors import FatalError
+    from daidalos.industry.rapid.runtime.loading import choose_program, load_modules
+    from daidalos.industry.rapid.runtime.task import Task
+
+    signals = [name for file in args.io for name in read_signals(file)]
+    program = choose_program(args.path, args.task)
+    modules, checker, blocking = load_modules(program, signals)
+    for report in blocking:
+        for problem in report.errors:
+            print(problem.text(report.file), file=sys.stderr)
+    if blocking:
+        return 2
+    board = Board(signals, dict(_parse_signal(text) for text in args.signal))
+    pace = None if args.fast else Pace()
+    try:
+        home = args.home or (args.path if args.path.is_dir() else args.path.parent)
+        task = Task(modules, checker, None, board, None, pace, datetime.now(), home, args.max_time)
+    except FatalError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    if args.task:
+        task.settings["name"] = args.task
+    watch = Watch(task)
+    outcome = task.run(args.proc)
+    watch.end()
+    status = _report(task, outcome, args.proc)
+    if args.save:
+        _save(task)
+    return status
+
+
+def _parse_signal(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise UserError(f"'{text}' is no signal; write --signal NAME=VALUE") from None
+
+
+def _report(task: Task, outcome: Outcome, procedure: str) -> int:
+    from daidalos.industry.rapid.runtime.robot import SimpleRobot
+
+    if outcome.reason == "error":
+        print(f"error: {outcome.message}", file=sys.stderr)
+        for place in outcome.calls[1:]:
+            print(f"  called in {place}", file=sys.stderr)
+        return 2
+    if outcome.reason == "interrupted":
+        print(f"\n{outcome.message}", file=sys.stderr)
+        return INTERRUPTED
+    how = "ended" if outcome.reason == "end" else f"ended by {outcome.reason}"
+    where = f" in {outcome.message}" if outcome.message else ""
+    moves = len(task.robot.moves) if isinstance(task.robot, SimpleRobot) else 0
+    count = f"{moves} movement{'' if moves == 1 else 's'}"
+    print(f"{procedure} {how}{where} after {outcome.time:.3f} s, {count}", file=sys.stderr)
+    return 0
+
+
+def _save(task: Task) -> None:
+    from daidalos.industry.rapid.runtime.persistence import save_persistents
+
+    for path in save_persistents(task):
+        print(f"saved {path}", file=sys.stderr)
+
+
+class Pace:
+    """Pace of real time: a call returns when as much of it has passed as the robot's time has."""
+
+    def __init__(self) -> None:
+        self._due = time.monotonic()
+
+    def __call__(self, seconds: float) -> None:
+        """Wait until real time has caught up."""
+        self._due += seconds
+        now = time.monotonic()
+        if now < self._due:
+            time.sleep(self._due - now)
+        else:
+            self._due = now
+
+
+class Watch:
+    """Thread that names a loop in which neither time passes nor anything is shown."""
+
+    def __init__(self, task: Task) -> None:
+        self._task = task
+        self._main = threading.get_ident()
+        self._ended = threading.Event()
+        self._named: set[str] = set()
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def end(self) -> None:
+        """End the thread."""
+        self._ended.set()
+
+    def _watch(self) -> None:
+        before = -1
+        while not self._ended.wait(ENDLESS_S):
+            if self._task.progress == before:
+                self._name_loop()
+            before = self._task.progress
+
+    def _name_loop(self) -> None:
+        place = self._task.place_of_frame(sys._current_frames().get(self._main))
+        if place and place not in self._named and not self._task.is_waiting:
+            self._named.add(place)
+            text = f"runs for {ENDLESS_S:g} s without motion, waiting or output; Ctrl-C stops it"
+            print(f"{place}: warning: the program {text}", file=sys.stderr, flush=True)

@@ -1,0 +1,1 @@
+"""RAPID, the language of ABB's robot controllers: reading, checking, formatting and running programs."""

@@ -1,0 +1,1 @@
+"""What editors ask about programs: definitions, uses, completions, outlines and renaming; and the language server."""

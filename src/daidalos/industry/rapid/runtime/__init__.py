@@ -1,0 +1,1 @@
+"""Execution of RAPID programs: translation to Python, values, predefined routines and the seam to a robot."""

@@ -1,0 +1,50 @@
+"""Registry of the predefined routines that run: each is a function of Python with the name of the routine.
+
+A routine gets the task, and an argument per parameter, named as the parameter in lower case with an underscore behind
+it. Optional parameters that are not given are None. What a routine may change is a reference, for data with one value,
+or the record or array itself.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+Implementation = TypeVar("Implementation", bound=Callable[..., Any])
+
+_routines: dict[str, Callable[..., Any]] = {}
+_MODULES = (
+    "mathematics", "strings", "positions", "signals", "dialogs", "timing", "movements", "interrupts", "bytes", "files",
+    "sockets",
+)  # fmt: skip
+
+
+def routine(*names: str) -> Callable[[Implementation], Implementation]:
+    """Register a function as a predefined routine under its names in RAPID."""
+
+    def register(function: Implementation) -> Implementation:
+        for name in names:
+            _routines[name.lower()] = function
+        return function
+
+    return register
+
+
+@functools.cache
+def _load() -> None:
+    for name in _MODULES:
+        importlib.import_module(f"daidalos.industry.rapid.runtime.{name}")
+
+
+def find_routine(key: str) -> Callable[..., Any] | None:
+    """Return the function of a predefined routine, by its name in lower case; None where it does not run."""
+    _load()
+    return _routines.get(key)
+
+
+def routines() -> dict[str, Callable[..., Any]]:
+    """Return all predefined routines that run."""
+    _load()
+    return dict(_routines)
