@@ -1,0 +1,1 @@
+"""Motion of industrial robots: kinematics of arms."""
