@@ -20,7 +20,8 @@ from typing import Any
 
 import psutil
 
-from tests.test_hostile_files import HOSTILE_JSON, HOSTILE_XML, HOSTILE_YAML, JSON, XML, YAML
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from test_hostile_files import HOSTILE_JSON, HOSTILE_XML, HOSTILE_YAML, JSON, XML, YAML
 
 INPUTS = int(os.environ.get("DAIDALOS_FUZZ_INPUTS", "20000"))
 SEED = int(os.environ.get("DAIDALOS_FUZZ_SEED", "0"))

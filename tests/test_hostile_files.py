@@ -154,9 +154,51 @@ def _outputs(path: Path) -> Any:
 
 
 def _route_graph(path: Path) -> Any:
-    from daidalos.navigation.routes.loaders.geojson_graph_file_loader import _Reader
+    from daidalos.navigation.routes.loaders.geojson_graph_file_loader import GeoJsonGraphFileLoader
 
-    return _Reader(path.read_text(encoding="utf-8"), str(path), lambda text: None).graph()
+    return GeoJsonGraphFileLoader().load(path)
+
+
+def _moving_heads(path: Path) -> Any:
+    from daidalos.industry.lighting.configuration import read_configuration
+
+    return read_configuration(path)
+
+
+def _head_geometry(path: Path) -> Any:
+    from daidalos.industry.lighting.calibration_file import read_geometry
+
+    return read_geometry(path)
+
+
+def _head_points(path: Path) -> Any:
+    from daidalos.industry.lighting.calibration_file import read_points
+
+    return read_points(path)
+
+
+def _head_session(path: Path) -> Any:
+    from daidalos.industry.lighting.calibration_file import read_session
+
+    return read_session(path, "head")
+
+
+def _fixture(path: Path) -> Any:
+    from daidalos.industry.lighting.fixture_file import read_fixture
+
+    return read_fixture(str(path))
+
+
+def _motion_primitives(path: Path) -> Any:
+    from daidalos.navigation.planners.state_lattice import read_lattice
+
+    return read_lattice(path)
+
+
+def _rapid_program(path: Path) -> Any:
+    from daidalos.industry.rapid.sources import read_program_file
+
+    return read_program_file(path)
 
 
 Reader = Callable[[Path], Any]
@@ -173,6 +215,10 @@ YAML: dict[str, tuple[Reader, str]] = {
     "scenario": (_scenario, "a.scenario.yaml"),
     "calibration": (_calibration, "a.yaml"),
     "outputs of bag convert": (_outputs, "a.yaml"),
+    "moving heads": (_moving_heads, "a.yaml"),
+    "geometry of a head": (_head_geometry, "a.yaml"),
+    "points of a head": (_head_points, "a.yaml"),
+    "session of a head": (_head_session, "a.yaml"),
 }
 XML: dict[str, tuple[Reader, str]] = {
     "launch": (_launch, "a.launch.xml"),
@@ -182,10 +228,13 @@ XML: dict[str, tuple[Reader, str]] = {
     "sdf": (_sdf, "a.sdf"),
     "manifest": (_manifest, "package.xml"),
     "policy": (_policy, "a.xml"),
+    "program of RAPID": (_rapid_program, "a.pgf"),
 }
 JSON: dict[str, tuple[Reader, str]] = {
     "frame of a client": (_frame, "a.json"),
     "route graph": (_route_graph, "a.geojson"),
+    "fixture": (_fixture, "a.json"),
+    "motion primitives": (_motion_primitives, "a.json"),
 }
 
 _BOMB = "\n".join(["a0: &a0 [x]", *(f"a{k + 1}: &a{k + 1} [{', '.join([f'*a{k}'] * 10)}]" for k in range(12))])

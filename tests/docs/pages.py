@@ -9,7 +9,8 @@ A page is Markdown. These fenced blocks have a meaning for the tests:
     terminal, which waits for its end. A block that begins without ``$`` shows what it has printed since then; lines
     after ``^C``, what it has printed by its end.
 ``text title="Keys in terminal 2"``
-    Keys that are pressed, one word each: a letter, or ``Up``, ``Down``, ``Left``, ``Right``, ``Space``.
+    Keys that are pressed, one word each: a letter, or ``Up``, ``Down``, ``Left``, ``Right``, ``Space``,
+    ``Enter``.
 any other with a path as its title
     A file with this text, relative to the home folder; it is written when the reader gets there.
 

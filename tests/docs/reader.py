@@ -8,7 +8,7 @@ from terminals import TIMEOUT_S, Terminal
 
 from . import pages
 
-_KEYS = {"Up": "\x1b[A", "Down": "\x1b[B", "Right": "\x1b[C", "Left": "\x1b[D", "Space": " "}
+_KEYS = {"Up": "\x1b[A", "Down": "\x1b[B", "Right": "\x1b[C", "Left": "\x1b[D", "Space": " ", "Enter": "\n"}
 _BETWEEN_LOOKS_S = 0.2
 _BETWEEN_KEYS_S = 0.3
 _SHOWN_LINES = 40

@@ -15,11 +15,14 @@ from daidalos.common.errors import UserError
 from daidalos.common.extensions import ExtensionError, Kind
 
 _DESCRIPTIONS = {
+    "arm": "Compute poses, joint angles and configurations of industrial robots",
     "bench": "Run a scenario many times, with other seeds and parameters",
     "demo": "A robot that maps an arena and drives where it is sent",
     "diff": "Compare two bags, message by message",
     "extensions": "List what can be extended, and the extensions that are there",
+    "light": "Point a moving head at places of a work cell",
     "map": "Build a map from the log of a robot",
+    "rapid": "Check, format and run programs of ABB robots",
     "scenario": "Run scenarios in lock-step, and look at those that failed",
     "sim": "Simulate a world",
     "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",
