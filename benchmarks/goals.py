@@ -57,6 +57,7 @@ GOALS = {
     "arms.irb120_inverse_poses_per_s": Goal(1e6, at_least=True),
     "arms.irb1600_inverse_poses_per_s": Goal(1e6, at_least=True),
     "arms.irb6700_inverse_poses_per_s": Goal(1e6, at_least=True),
+    "arms.kr500_2mt_inverse_poses_per_s": Goal(1e6, at_least=True),
     "arms.round_trip_worst_error_m": Goal(1e-9),
     "rapid.public_files_parsed_percent": Goal(97.0, at_least=True, theirs="56 (rapidchecker)"),
     "rapid.public_files_parse_ms_mean": Goal(50.0),

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from daidalos.common.suggestions import hint
 from daidalos.industry.robots.arm import Arm, Axis
 
-_LIST = (
+ABB_ARMS = (
     Arm(
         name="irb120",
         title="ABB IRB 120-3/0.6",
@@ -73,20 +72,3 @@ _LIST = (
         source="ABB product specification IRB 6700, 3HAC044265-001",
     ),
 )
-
-ARMS = {arm.name: arm for arm in _LIST}
-"""Known arms by name."""
-
-
-def arm_named(name: str) -> Arm:
-    """Return a known arm.
-
-    Raises
-    ------
-    ValueError
-        Where no arm has this name; the message names the nearest known ones.
-    """
-    found = ARMS.get(name.lower())
-    if found is None:
-        raise ValueError(f"there is no arm '{name}'{hint(name.lower(), ARMS)}")
-    return found
