@@ -23,17 +23,12 @@ from daidalos.industry.lighting.engine import Engine
 from daidalos.industry.lighting.look import Look
 from daidalos.industry.lighting.mqtt_service import MqttService
 from daidalos.industry.lighting.show import Show
+from mqtt_brokers import free_port, mosquitto
 
 mqtt = pytest.importorskip("paho.mqtt.client")
 pytest.importorskip("amqtt")
 
 PATIENCE_S = 30.0
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
 
 
 class Person:
@@ -106,29 +101,6 @@ def person(request, engine, tmp_path):
         one = Person(port)
         yield one
         one.close()
-
-
-class mosquitto:
-    """Mosquitto within a ``with`` block."""
-
-    def __init__(self, port, folder, lines=""):
-        program = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin")
-        if not program:
-            pytest.skip("there is no mosquitto")
-        file = folder / "mosquitto.conf"
-        file.write_text(f"user root\nlistener {port} 127.0.0.1\n{lines or 'allow_anonymous true'}\n")
-        self._command, self._port = [program, "-c", str(file)], port
-
-    def __enter__(self):
-        self._process = subprocess.Popen(self._command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        for line in self._process.stderr:
-            if "running" in line:
-                return self
-        raise AssertionError("mosquitto did not start")
-
-    def __exit__(self, *error):
-        self._process.terminate()
-        self._process.communicate()
 
 
 def test_points_channels_and_looks(person, engine):

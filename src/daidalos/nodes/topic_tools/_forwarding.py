@@ -6,7 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile
+
+from daidalos.nodes.message_classes import find_message_class
+from daidalos.nodes.qos import matching_qos
 
 _DEPTH = 10
 
@@ -81,7 +84,7 @@ class TopicForwarder:
             self._advertise()
         wanted = bool(infos) and (not self._lazy or self._has_subscribers())
         if wanted and self._subscription is None:
-            kind = _message_class(self._node, self._type)
+            kind = find_message_class(self._node, self._type)
             if kind is not None:
                 self._subscription = self._node.create_subscription(
                     kind, self._input, self._received, self._qos, raw=True
@@ -91,20 +94,13 @@ class TopicForwarder:
 
     def _know(self, infos: Sequence[Any]) -> None:
         """Record the type, and a quality of service compatible with all publishers."""
-        profiles = [info.qos_profile for info in infos]
-        reliable = all(profile.reliability == ReliabilityPolicy.RELIABLE for profile in profiles)
-        latched = all(profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for profile in profiles)
         self._type = infos[0].topic_type
-        self._qos = QoSProfile(
-            depth=_DEPTH,
-            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-            durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
-        )
+        self._qos = matching_qos(infos, _DEPTH)
 
     def _advertise(self) -> None:
         for name in self._outputs:
             if name not in self._publishers:
-                kind = _message_class(self._node, self._type)
+                kind = find_message_class(self._node, self._type)
                 if kind is not None:
                     self._publishers[name] = self._node.create_publisher(kind, name, self._qos)
 
@@ -115,14 +111,3 @@ class TopicForwarder:
         subscription, self._subscription = self._subscription, None
         if subscription is not None:
             self._node.destroy_subscription(subscription)
-
-
-def _message_class(node: Node, type_name: str) -> Any:
-    """Return a message class; None, and log an error, where it is not known."""
-    from rosidl_runtime_py.utilities import get_message
-
-    try:
-        return get_message(type_name)
-    except (AttributeError, ImportError, ValueError) as error:
-        node.get_logger().error(f"the type {type_name} is not known here: {error}", once=True)
-        return None

@@ -1,0 +1,1 @@
+"""Bridge between ROS topics and MQTT topics."""
