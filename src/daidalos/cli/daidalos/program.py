@@ -26,6 +26,7 @@ _DESCRIPTIONS = {
     "scenario": "Run scenarios in lock-step, and look at those that failed",
     "sim": "Simulate a world",
     "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",
+    "weld": "Correct the paths of welding robots for their elasticity",
 }
 VERBS: Kind[Any] = Kind(
     "daidalos_verb",

@@ -1,0 +1,199 @@
+"""`daidalos weld`: friction stir welding with arms, in the millimetres and degrees of their controllers."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daidalos.common.errors import UserError
+
+if TYPE_CHECKING:
+    from daidalos.industry.welding.correction import Cell
+    from daidalos.industry.welding.planning import Plan
+
+
+class WeldVerb:
+    """Correct the paths of welding robots for their elasticity."""
+
+    def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments of `daidalos weld`."""
+        commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+        plan = commands.add_parser("plan", help="correct a path, and write programs, points, figures and a report")
+        plan.add_argument(
+            "path", type=Path, help="seam: .csv, .stl, .obj, .ply, .mod, .pgf, .src or .yaml (a ROS path)"
+        )
+        add_robot(plan)
+        plan.add_argument(
+            "--wrench", type=finite, nargs="+", metavar="W",
+            help="FX FY FZ [N] MX MY MZ [Nm] that the tool exerts, x ahead, z into the workpiece",
+        )  # fmt: skip
+        plan.add_argument("--speed", type=finite, default=300.0, metavar="MM/MIN", help="of the tool (default: 300)")
+        plan.add_argument("--tilt", type=finite, default=2.5, metavar="DEG", help="of the tool (default: 2.5)")
+        plan.add_argument(
+            "--rotation", default="0", metavar="DEG|best", help="about the tool's axis; best: the stiffest (default: 0)"
+        )
+        plan.add_argument("--points", type=int, metavar="N", help="points of the corrected path")
+        plan.add_argument(
+            "--place", type=finite, nargs="+", default=[0.0] * 6, metavar="P",
+            help="pose of the workpiece in the base: X Y Z [mm] A B C [deg] about z, y', x''",
+        )  # fmt: skip
+        plan.add_argument("--pick", type=_point, action="append", metavar="X,Y,Z", help="a point of the seam on a mesh")
+        plan.add_argument("--mesh-unit", choices=("mm", "m"), default="mm", help="unit of a mesh (default: mm)")
+        plan.add_argument("--places", action="store_true", help="try other places of the workpiece")
+        plan.add_argument("-o", "--output", type=Path, required=True, metavar="FOLDER", help="where the files go")
+        plan.add_argument("--json", action="store_true", help="print the figures as JSON")
+        plan.set_defaults(_command=_plan)
+
+    def main(self, *, args: argparse.Namespace) -> int:
+        """Run the command."""
+        status: int = args._command(args)
+        return status
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments that describe the robot and what counts for its deflection."""
+    parser.add_argument("--robot", default="kr500_2mt", metavar="ARM", help="of `daidalos arm list`")
+    parser.add_argument(
+        "--elasticity", type=Path, metavar="FILE", help="YAML (default: that of the robot's description)"
+    )
+    parser.add_argument(
+        "--tool", type=finite, nargs="+", default=[0.0, 0.0, 800.0], metavar="T",
+        help="tool's centre point on the flange: X Y Z [mm] and A B C [deg] (default: 0 0 800)",
+    )  # fmt: skip
+    parser.add_argument("--tool-mass", type=finite, default=120.0, metavar="KG", help="for gravity (default: 120)")
+    parser.add_argument("--gravity", action="store_true", help="count the weight of the links and the tool")
+    parser.add_argument("--friction", action="store_true", help="count friction of the joints")
+    parser.add_argument("--no-backlash", action="store_true", help="do not count backlash")
+
+
+def finite(text: str) -> float:
+    """Return a finite number of the command line."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"'{text}' is no finite number")
+    return value
+
+
+def cell_of(args: argparse.Namespace) -> Cell:
+    """Return the robot and its tool that arguments describe.
+
+    Raises
+    ------
+    UserError
+        Where there is no such robot, or it has no elasticity.
+    """
+    from daidalos.industry.elasticity.deflection import Options
+    from daidalos.industry.elasticity.elasticity_file import read_elasticity
+    from daidalos.industry.robots import arm_named
+    from daidalos.industry.welding.correction import Cell
+
+    try:
+        arm = arm_named(args.robot)
+    except ValueError as error:
+        raise UserError(str(error)) from None
+    file = args.elasticity or elasticity_of(arm.name)
+    if not file.is_file():
+        if args.elasticity is None:
+            raise UserError(f"the stiffness of {arm.title} is not known; give --elasticity FILE")
+        raise UserError(f"{file}: there is no such file")
+    if args.tool_mass < 0.0:
+        raise UserError(f"--tool-mass is {args.tool_mass:g}, but must not be negative")
+    elasticity = read_elasticity(file, arm.name).with_tool(args.tool_mass)
+    tool = pose_of(args.tool, "--tool")
+    return Cell(arm, elasticity, tool, Options(args.gravity, args.friction, (not args.no_backlash,) * 6))
+
+
+def elasticity_of(robot: str) -> Path:
+    """Return where a robot's description has its elasticity, whether it is there or not."""
+    return Path(__file__).parents[2] / "share" / f"{robot}_description" / "config" / "elasticity.yaml"
+
+
+def pose_of(values: list[float], option: str) -> Any:
+    """Return the pose (4, 4) of X Y Z [mm] and A B C [deg]; the angles may be left out."""
+    from daidalos.common.pose3 import Pose
+
+    if len(values) not in (3, 6):
+        raise UserError(f"{option} has {len(values)} values, but X Y Z or X Y Z A B C are expected")
+    x, y, z, a, b, c = (*values, 0.0, 0.0, 0.0)[:6]
+    position = (1e-3 * x, 1e-3 * y, 1e-3 * z)
+    return Pose.from_xyz_rpy(position, (math.radians(c), math.radians(b), math.radians(a))).matrix
+
+
+def _point(text: str) -> tuple[float, float, float]:
+    parts = [finite(part) for part in text.split(",")]
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"'{text}' is no point; write X,Y,Z")
+    return parts[0], parts[1], parts[2]
+
+
+def _plan(args: argparse.Namespace) -> int:
+    import numpy as np
+
+    from daidalos.industry.welding.planning import Request, plan
+    from daidalos.industry.welding.reading import read_seam
+    from daidalos.industry.welding.results import write_plan
+
+    if args.wrench is not None and len(args.wrench) != 6:
+        raise UserError(f"--wrench has {len(args.wrench)} values, but FX FY FZ [N] MX MY MZ [Nm] are expected")
+    if not args.speed > 0.0:
+        raise UserError(f"--speed is {args.speed:g}, but must be greater than 0 mm/min")
+    if args.points is not None and not 2 <= args.points <= 100_000:
+        raise UserError(f"--points is {args.points}, but must be 2 to 100000")
+    cell = cell_of(args)
+    seam = read_seam(args.path, args.pick, 1e-3 if args.mesh_unit == "mm" else 1.0, pose_of(args.place, "--place"))
+    request = Request(
+        speed=args.speed / 60e3,
+        wrench=None if args.wrench is None else np.array(args.wrench),
+        tilt=math.radians(args.tilt),
+        rotation=None if args.rotation == "best" else math.radians(_angle(args.rotation)),
+        points=args.points,
+        places=args.places,
+    )
+    planned = plan(cell, seam, request, str(args.path))
+    files = write_plan(planned, args.output, args.path.stem, args.tool_mass)
+    if args.json:
+        print(json.dumps(planned.as_json() | {"files": [str(file) for file in files]}, indent=1))
+    else:
+        _show(planned)
+        print(f"written to {args.output}: {', '.join(file.name for file in files)}")
+    return 0
+
+
+def _angle(text: str) -> float:
+    try:
+        return finite(text)
+    except argparse.ArgumentTypeError:
+        raise UserError(f"--rotation is '{text}', but must be an angle in degrees or 'best'") from None
+
+
+def _show(planned: Plan) -> None:
+    figures = planned.as_json()
+    print(
+        f"{figures['points']} points over {figures['length_mm']:.1f} mm, "
+        f"{len(planned.correction.convergence)} iterations to {1e3 * planned.correction.convergence[-1][0]:.7f} mm"
+    )
+    print(f"{'deviation, rms [mm]':24}{'not corrected':>14}{'corrected':>12}")
+    for direction in ("ahead", "across", "along_tool"):
+        before, after = (figures[state][f"{direction}_rms_mm"] for state in ("before", "after"))
+        print(f"  {direction.replace('_', ' '):22}{before:14.3f}{after:12.3f}")
+    spline = figures["spline"]
+    print(
+        f"B-splines of degree 4: {spline['position_knots']} + {spline['orientation_knots']} inner knots in "
+        f"{spline['pieces']} pieces, residual {spline['residual_mm']:.4f} mm"
+    )
+    changes = [f"axis {axis}: {count}" for axis, count in enumerate(figures["flank_changes"], 1) if count]
+    print(f"changes of flank: {', '.join(changes) or 'none'}")
+    for name, unit, title in (
+        ("rotations", "deg", "rotation about the tool"),
+        ("places", "mm", "shift of the workpiece"),
+    ):
+        if figures[name] and figures[name][0]["deflection_mm"] is not None:
+            best = figures[name][0]
+            value = ", ".join(f"{one:g}" for one in best[f"value_{unit}"])
+            print(f"stiffest {title}: {value} {unit}, deflection {best['deflection_mm']:.3f} mm rms")

@@ -1,0 +1,1 @@
+"""Friction stir welding with arms: seams, path correction by elasticity, programs, and experiments in simulation."""

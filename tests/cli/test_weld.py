@@ -1,0 +1,71 @@
+"""`daidalos weld`: what is written and printed, and what is wrong with what was typed."""
+
+import json
+
+import pytest
+
+from daidalos.cli.daidalos import main
+
+WRENCH = ["--wrench", "420", "-175", "8000", "0", "0", "7"]
+LINE = "x_mm,y_mm,z_mm\n2300,200,900\n2300,-200,900\n"
+
+
+@pytest.fixture
+def line(tmp_path):
+    path = tmp_path / "line.csv"
+    path.write_text(LINE)
+    return path
+
+
+def test_plan_writes_programs_points_figures_and_a_report(line, tmp_path, capsys):
+    out = tmp_path / "corrected"
+    assert main(["weld", "plan", str(line), *WRENCH, "--no-backlash", "-o", str(out), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["before"]["across_rms_mm"] == pytest.approx(2.6, abs=0.1)
+    assert printed["before"]["along_tool_rms_mm"] == pytest.approx(5.9, abs=0.1)
+    assert printed["after"]["along_tool_rms_mm"] < 0.001
+    assert printed["convergence"][-1]["distance_mm"] < 1e-3
+    assert sorted(file.name for file in out.iterdir()) == [
+        "plan.json", "report.html", "weld_line.csv", "weld_line.mod", "weld_line.src",
+    ]  # fmt: skip
+    assert json.loads((out / "plan.json").read_text())["points"] == 100
+    page = (out / "report.html").read_text()
+    assert page.count("<svg") == 9
+    assert "http" not in page.replace("http://www.w3.org/2000/svg", "")
+    assert main(["rapid", "check", str(out / "weld_line.mod")]) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "has no columns fx, fy, fz, mx, my, mz; give --wrench"),
+        (["--wrench", "1", "2"], "--wrench has 2 values, but FX FY FZ [N] MX MY MZ [Nm] are expected"),
+        ([*WRENCH, "--robot", "kr500"], "there is no arm 'kr500'; did you mean 'kr500_2mt'"),
+        (
+            [*WRENCH, "--robot", "irb6700"],
+            "the stiffness of ABB IRB 6700-150/3.20 is not known; give --elasticity FILE",
+        ),
+        ([*WRENCH, "--elasticity", "none.yaml"], "none.yaml: there is no such file"),
+        ([*WRENCH, "--place", "3000", "0", "0"], "can not follow the path: point 1 is out of reach"),
+        ([*WRENCH, "--place", "3000", "0"], "--place has 2 values"),
+        ([*WRENCH, "--speed", "0"], "--speed is 0, but must be greater than 0"),
+        ([*WRENCH, "--points", "1"], "--points is 1, but must be 2"),
+        ([*WRENCH, "--rotation", "x"], "--rotation is 'x'"),
+        (["--wrench", "0", "0", "9e6", "0", "0", "0"], "the load winds axis"),
+    ],
+)
+def test_what_is_wrong_is_one_line(arguments, message, line, tmp_path, capsys):
+    assert main(["weld", "plan", str(line), "-o", str(tmp_path / "out"), *arguments]) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_nothing_is_written_over(line, tmp_path, capsys):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "report.html").write_text("mine")
+    assert main(["weld", "plan", str(line), *WRENCH, "-o", str(out)]) == 2
+    assert "report.html: is there already" in capsys.readouterr().err
+    assert [file.name for file in out.iterdir()] == ["report.html"]
