@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from nav2_msgs.action import NavigateToPose
+from nav2_msgs.srv import LoadMap
 
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import save_map
@@ -17,7 +18,7 @@ from daidalos.testing.programs import Nodes
 from daidalos.testing.scenario import Scenario
 from daidalos.testing.worlds import World
 from description.robots import SHARE
-from end_to_end.test_navigation_failures import BLIND_M, Drive
+from end_to_end.driving import BLIND_M, Drive
 
 pytestmark = [
     pytest.mark.slow,
@@ -88,3 +89,29 @@ def test_a_robot_that_is_carried_away_does_not_report_success(drive: Drive, pose
     drive.robot.move(pose[0], pose[1], yaw=pose[2])
     assert drive.distance_in(4.0) < 0.5
     assert "was aborted" in drive.end()
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+def test_a_map_that_is_changed_shows_the_way(drive: Drive, service: Any, tmp_path: Path) -> None:
+    """A wall of the new map bars the way, though there is none in the world: the robot drives around it."""
+    changed = map_of(ARENA)
+    column, low, high = (
+        round((value - corner) / RESOLUTION) for value, corner in ((1.2, LOW[0]), (-0.9, LOW[1]), (0.9, LOW[1]))
+    )
+    changed.data[low:high, column : column + 2] = 100
+    file, _ = save_map(changed, tmp_path / "changed")
+    assert service("/map_server/load_map", LoadMap).call(map_url=str(file)).result == 0
+    drive.robot.pose.always(lambda pose: not (1.15 < pose.x < 1.35 and abs(pose.y) < 0.85))
+    assert drive.end() == ""
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+def test_a_map_of_another_place_stops_the_robot(drive: Drive, service: Any, tmp_path: Path) -> None:
+    other = map_of(ARENA)
+    other.data[:] = 0
+    for row, column in np.random.default_rng(1).integers(0, other.data.shape, (60, 2)):
+        other.data[row : row + 4, column : column + 4] = 100
+    file, _ = save_map(other, tmp_path / "other")
+    assert service("/map_server/load_map", LoadMap).call(map_url=str(file)).result == 0
+    assert "was aborted" in drive.end()
+    assert "the transform from map to odom" in drive.failure or "base_footprint to map" in drive.failure

@@ -116,6 +116,9 @@ def test_topics_services_and_programs(
     assert heard.rate(during=0.4) == 0.0
     clock.sleep(0.2)
     assert heard.rate(during=1.0) == pytest.approx(10.0, abs=1.0)
+    network.alter("/count", lambda message: setattr(message, "data", "another"))
+    heard.eventually(lambda message: message.data == "another", within=0.5)
+    assert count.value.data != "another"
 
 
 @pytest.mark.slow

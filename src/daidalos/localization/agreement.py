@@ -141,7 +141,7 @@ class LostDetector:
         self.reset()
 
     def reset(self) -> None:
-        """Forget what is usual, for a new first pose or another map."""
+        """Forget what is usual, for a new first pose."""
         self._usual = np.zeros(2)
         self._agreeing = self._lost = 0
 

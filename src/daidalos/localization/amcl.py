@@ -122,6 +122,8 @@ class Amcl:
     def set_map(self, grid: OccupancyGrid) -> None:
         """Continue in another map of the same frame.
 
+        A pose that agreed with the last map is judged by the next scans in this one.
+
         Raises
         ------
         LocalizationError
@@ -129,7 +131,6 @@ class Amcl:
         """
         self._world = _likelihood_map(self.config, grid)
         self._grid = grid
-        self._lost.reset()
 
     def contains(self, position: Array) -> bool:
         """Return whether a position (x, y) lies on the map."""

@@ -54,42 +54,60 @@ class BlockingBuffer(Buffer):
 
 
 class SensorPoses:
-    """Static poses of sensors in the robot's base frame.
+    """Poses of sensors in the robot's base frame.
 
     Parameters
     ----------
     buffer
-        Where they are looked up once.
+        Where they are looked up: once, or each time for a sensor that is moved.
     base_frame
         The frame of the robot's base.
     logger
         Logs for which sensor a transform is missing.
+    fixed_frame
+        Frame in which the robot moves: data of sensors that do not move with the robot are refused. Any are accepted
+        where it is empty.
     """
 
-    def __init__(self, buffer: Buffer, base_frame: str, logger: RcutilsLogger) -> None:
+    def __init__(self, buffer: Buffer, base_frame: str, logger: RcutilsLogger, fixed_frame: str = "") -> None:
         self._buffer = buffer
         self._base_frame = base_frame
         self._logger = logger
-        self._mounts: dict[str, SensorMount] = {}
+        self._fixed_frame = fixed_frame
+        self._static: dict[str, Any] = {}
 
     def find(self, frame: str) -> SensorMount | None:
         """Return how the sensor of a frame is mounted, None while it is not known, which is logged."""
-        mount = self.mount(frame)
-        if mount is None:
-            self._logger.info(
-                f"waiting for the transform from {frame} to {self._base_frame}", throttle_duration_sec=5.0
-            )
-        return mount
+        found = self.transform(frame)
+        return None if found is None else mount_of_transform(found)
+
+    def transform(self, frame: str) -> Any | None:
+        """Return the transform of a sensor to the base, None while it is not known, which is logged."""
+        found, problem = self._look_up(frame)
+        if found is None:
+            self._logger.info(problem, throttle_duration_sec=5.0)
+        return found
 
     def mount(self, frame: str) -> SensorMount | None:
         """Return how the sensor of a frame is mounted, None while it is not known."""
-        if frame not in self._mounts:
-            try:
-                found = self._buffer.lookup_transform(self._base_frame, frame, Time())
-            except TransformException:
-                return None
-            self._mounts[frame] = mount_of_transform(found.transform)
-        return self._mounts[frame]
+        found, _ = self._look_up(frame)
+        return None if found is None else mount_of_transform(found)
+
+    def _look_up(self, frame: str) -> tuple[Any, str]:
+        """Return the transform of a sensor, or None and why it is not known."""
+        if frame in self._static:
+            return self._static[frame], ""
+        try:
+            found = self._buffer.lookup_transform(self._base_frame, frame, Time())
+        except TransformException:
+            return None, f"waiting for the transform from {frame} to {self._base_frame}"
+        if not nanoseconds(found.header.stamp):
+            self._static[frame] = found.transform
+        elif self._fixed_frame and self._fixed_frame in self._buffer._chain(
+            self._base_frame, Time(), frame, Time(), self._base_frame
+        ):
+            return None, f"data in the frame '{frame}' are refused: it does not move with the robot"
+        return found.transform, ""
 
     def missing(self, frame: str) -> str:
         """Return why the transform of a sensor is not known, with the frames that are."""

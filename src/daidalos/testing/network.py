@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import random
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -73,20 +74,45 @@ class Network:
                 lambda: self._restore_after(topic, seconds), self._scenario.program, f"drop-out of {topic}"
             )
 
+    def alter(self, topic: str, change: Callable[[Any], None]) -> None:
+        """Change all messages of a topic on their way, such as those of a sensor that is frozen.
+
+        Parameters
+        ----------
+        topic : str
+        change : callable
+            Called with a copy of each message, once, whichever number of subscriptions there is; changes it in place.
+        """
+        changed: dict[int, Any] = {}
+
+        def carry(subscription: Any, item: tuple[Any, ...]) -> None:
+            if _is_observing(subscription):
+                subscription.enqueue(item)
+                return
+            message, sequence = item[0], item[2]
+            if sequence not in changed:
+                changed.clear()
+                changed[sequence] = copy.deepcopy(message)
+                change(changed[sequence])
+            subscription.enqueue((changed[sequence], *item[1:]))
+
+        self._impair(topic, carry)
+
     def _restore_after(self, topic: str, seconds: float) -> None:
         scheduler = self._scenario.run.scheduler
         scheduler.sleep_until(scheduler.now_ns + round(1e9 * seconds))
         self.restore(topic)
 
     def _set(self, topic: str, impairment: Impairment | None) -> None:
+        self._impair(topic, None if impairment is None else self._carrier(impairment))
+
+    def _impair(self, topic: str, carry: Callable[[Any, tuple[Any, ...]], None] | None) -> None:
         name = topic if topic.startswith("/") else f"/{topic}"
-        session = self._scenario.node.handle.session
-        session.impair(name, None if impairment is None else self._carrier(impairment))
+        self._scenario.node.handle.session.impair(name, carry)
 
     def _carrier(self, impairment: Impairment) -> Callable[[Any, tuple[Any, ...]], None]:
         def carry(subscription: Any, item: tuple[Any, ...]) -> None:
-            observing = subscription.endpoint.node.name in ("rosbag2_recorder", "scenario")
-            if observing:
+            if _is_observing(subscription):
                 subscription.enqueue(item)
             elif impairment.loss < 1.0 and self._random.random() >= impairment.loss:
                 self._deliver(subscription, item, impairment)
@@ -107,3 +133,8 @@ class Network:
             subscription.enqueue(item)
 
         scheduler.spawn(arrive, self._scenario.program, f"message on {subscription.endpoint.name}")
+
+
+def _is_observing(subscription: Any) -> bool:
+    """Return whether a subscription is that of the test or its recorder."""
+    return subscription.endpoint.node.name in ("rosbag2_recorder", "scenario")

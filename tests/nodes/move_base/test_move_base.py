@@ -80,6 +80,7 @@ class Bench:
         from tf2_msgs.msg import TFMessage
 
         self.stage = stage
+        self.generator = np.random.default_rng(1)
         self.robot = stage.add_robot()
         self.robot.pose = np.array([-1.5, -1.0, 0.0])
         static = transform_stamped(np.zeros(3), "base_link", "base_scan", stage.stamp)
@@ -90,7 +91,8 @@ class Bench:
         stage.publish("/map", rooms(), LATCHED)
 
     def _scan(self) -> None:
-        scan = LaserScan(angle_min=-3.1, angle_increment=0.2, range_min=0.1, range_max=10.0, ranges=[9.0] * 32)
+        ranges = self.generator.normal(9.0, 0.01, 32).tolist()
+        scan = LaserScan(angle_min=-3.1, angle_increment=0.2, range_min=0.1, range_max=10.0, ranges=ranges)
         scan.header.frame_id, scan.header.stamp = "base_scan", self.stage.stamp
         self.scans.publish(scan)
 

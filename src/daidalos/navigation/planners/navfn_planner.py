@@ -29,7 +29,7 @@ effect.
 """
 
 OBSTACLE_SKIN = 0.1
-"""Assumed depth [m] of obstacles behind the surface that sensors see; goals there are rejected."""
+"""Assumed depth [m] of obstacles behind the surface that sensors see; unknown goals there are rejected."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +80,8 @@ class NavfnPlanner(GlobalPlanner):
 
     def _refuse_obstacles(self, costmap: Costmap, last: Cell, goal: Array) -> None:
         cost = int(costmap.costs[last[1], last[0]])
-        if _touches_obstacle(costmap, last):
-            raise GoalOccupied(f"the goal {words(goal)} is in an obstacle, or within {OBSTACLE_SKIN} m of one")
+        if cost == LETHAL_OBSTACLE or (cost == NO_INFORMATION and _touches_obstacle(costmap, last)):
+            raise GoalOccupied(f"the goal {words(goal)} is in an obstacle")
         if cost == NO_INFORMATION and not self.parameters.allow_unknown:
             raise GoalOccupied(f"the goal {words(goal)} is in unknown space and allow_unknown is false")
 

@@ -15,7 +15,12 @@ from tf2_ros import Buffer, TransformException
 from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose3 import rotation_matrix
+from daidalos.navigation.costmap.frozen_data import FrozenData
+from daidalos.nodes.conversions import pose2_of_transform
 from daidalos.samples.fields import nanoseconds
+
+_OWN_RADIUS = 0.5
+"""Distance [m] from a sensor up to which it may see the robot itself."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +61,9 @@ class Source:
         self.parameters = parameters
         self._buffer = buffer
         self._message: Any = None
+        self._judged: Any = None
+        self._frozen = FrozenData(_OWN_RADIUS)
+        self._is_frozen = False
         kinds = {"scan": LaserScan, "pointcloud": PointCloud2, "range": Range, "polygon": PolygonInstanceStamped}
         node.create_subscription(kinds[parameters.type], parameters.topic, self._take, qos_profile_sensor_data)
 
@@ -87,6 +95,8 @@ class Source:
         if isinstance(points, str):
             return points
         try:
+            if odom and self._repeats(points, base, odom):
+                return "it repeats the same data while the robot moves"
             transform = self._transform(header, base, odom, now_ns, tolerance).transform
         except TransformException as error:
             return str(error)
@@ -97,6 +107,14 @@ class Source:
             moved = moved[(height >= self.parameters.min_height) & (height <= self.parameters.max_height)]
         flat: Array = moved[:, :2]
         return flat
+
+    def _repeats(self, points: Array, base: str, odom: str) -> bool:
+        """Return whether the scan or cloud is frozen; see `FrozenData`."""
+        if self._judged is not self._message and self.parameters.type in ("scan", "pointcloud"):
+            self._judged = self._message
+            pose = pose2_of_transform(self._buffer.lookup_transform(odom, base, Time()).transform)
+            self._is_frozen = self._frozen.repeats(points, np.linalg.norm(points, axis=1), pose)
+        return self._is_frozen
 
     def _transform(self, header: Any, base: str, odom: str, now_ns: int, tolerance: float) -> Any:
         if not odom:

@@ -9,10 +9,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
 from rclpy.task import Future
 from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
@@ -30,12 +28,7 @@ from daidalos.navigation.costmap.observation import CloudData, RangeData
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import COSTMAP_LAYERS
 from daidalos.nodes.action_results import TransformFailed
-from daidalos.nodes.conversions import (
-    cloud_data,
-    pose2_of_transform,
-    range_data,
-    scan_data,
-)
+from daidalos.nodes.conversions import pose2_of_transform
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_filters import (
@@ -45,13 +38,14 @@ from daidalos.nodes.nav2_costmap_2d._costmap_filters import (
     serve_toggle,
 )
 from daidalos.nodes.nav2_costmap_2d._costmap_interface import CostmapInterface
+from daidalos.nodes.nav2_costmap_2d._sensor_inputs import SensorInputs
 from daidalos.nodes.nav2_costmap_2d._transform_age import TransformAges
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare, declare_without_effect
 from daidalos.nodes.qos import LATCHED
-from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
+from daidalos.nodes.transforms import BlockingBuffer
 from daidalos.nodes.warming import warm_up_in_background
-from daidalos.samples.fields import nanoseconds, seconds
+from daidalos.samples.fields import nanoseconds
 
 _POLL_HZ = 20.0
 _NEVER = Time(nanoseconds=1)
@@ -158,7 +152,7 @@ class CostmapNode(ManagedNode):
         self.footprint = Footprint.from_parameters(p.footprint, p.robot_radius, p.footprint_padding)
         self.buffer = BlockingBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
-        self._sensor_poses = SensorPoses(self.buffer, self.base_frame, self.get_logger())
+        self._sensors = SensorInputs(self, judges_repetition=p.rolling_window)
         self._compiled = Future()
         self._timers: list[Any] = []
 
@@ -235,9 +229,9 @@ class CostmapNode(ManagedNode):
         layer = maker.make(COSTMAP_LAYERS, name, _DEFAULT_PLUGINS.get(name, ""))
         listeners: dict[type, Callable[[Input], None]] = {
             OccupancyGrid: self._listen_to_map,
-            LaserScanData: self._listen_to_scans,
-            CloudData: self._listen_to_clouds,
-            RangeData: self._listen_to_ranges,
+            LaserScanData: self._sensors.listen_to_scans,
+            CloudData: self._sensors.listen_to_clouds,
+            RangeData: self._sensors.listen_to_ranges,
             FilterInfo: partial(listen_to_filter_info, self),
         }
         for one in layer.inputs:
@@ -258,57 +252,6 @@ class CostmapNode(ManagedNode):
 
         topic = listened.topic or self._settings.map_topic
         self.create_subscription(GridMessage, topic, take, LATCHED if listened.latched else 1)
-
-    def _listen_to_scans(self, listened: Input) -> None:
-        from sensor_msgs.msg import LaserScan
-
-        def convert(scan: Any) -> LaserScanData | None:
-            mount = self._sensor_poses.find(scan.header.frame_id)
-            return None if mount is None else scan_data(scan, mount)
-
-        self._listen_to_sensor(LaserScan, listened, convert)
-
-    def _listen_to_clouds(self, listened: Input) -> None:
-        from sensor_msgs.msg import PointCloud2
-
-        def convert(cloud: Any) -> CloudData | None:
-            try:
-                found = self.buffer.lookup_transform(self.base_frame, cloud.header.frame_id, Time())
-            except TransformException as error:
-                self.get_logger().info(f"waiting for a transform: {error}", throttle_duration_sec=5.0)
-                return None
-            return cloud_data(cloud, found.transform)
-
-        self._listen_to_sensor(PointCloud2, listened, convert)
-
-    def _listen_to_ranges(self, listened: Input) -> None:
-        from sensor_msgs.msg import Range
-
-        def convert(message: Any) -> RangeData | None:
-            mount = self._sensor_poses.find(message.header.frame_id)
-            return None if mount is None else range_data(message, mount)
-
-        self._listen_to_sensor(Range, listened, convert)
-
-    def _listen_to_sensor(self, kind: Any, listened: Input, convert: Callable[[Any], Any]) -> None:
-        """Pass messages on with the pose of the base at their time; `convert` returns None for what cannot be used."""
-
-        async def take(message: Any) -> None:
-            sample = convert(message)
-            if sample is None:
-                return
-            stamp = message.header.stamp
-            found = await self.buffer.transform_at(self.global_frame, self.base_frame, stamp)
-            if found is None:
-                return
-            with self.lock:
-                pose = pose2_of_transform(found.transform)
-                listened.take(sample.lifted(found.transform.translation.z), pose, seconds(stamp))
-
-        # A message waits for its transform; updates and services do not wait with it.
-        group = MutuallyExclusiveCallbackGroup()
-        topic = self.outer_topic(listened.topic)
-        self.create_subscription(kind, topic, take, qos_profile_sensor_data, callback_group=group)
 
     # Cycle.
 
@@ -399,12 +342,17 @@ class CostmapNode(ManagedNode):
             It took longer.
         """
         await self._compiled
-        limit_s = limit_s if self._updates else max(limit_s, _FIRST_UPDATE_S)
+        limit_s = limit_s if self._is_complete else max(limit_s, _FIRST_UPDATE_S)
         if not await wait_until(self._is_current, node, _POLL_HZ, limit_s):
             raise CostmapTimedOut(f"the {self.get_name()} is not known yet: {self._missing_inputs()}")
 
     def _is_current(self) -> bool:
-        return self._updates > 0 and not self._missing_input()
+        return self._is_complete and not self._missing_input()
+
+    @property
+    def _is_complete(self) -> bool:
+        """Whether it was updated with all its inputs since it was configured."""
+        return bool(self.updated != _NEVER.to_msg())
 
     def _missing_input(self) -> str:
         """Return what the first layer that lacks an input lacks, in words."""

@@ -27,7 +27,7 @@ def walked(velocity, seconds=1.0, **parameters):
 
 
 def test_the_way_ahead_of_a_walker_is_lethal():
-    layered, _ = walked(1.0)
+    layered, _ = walked(1.0, prediction_time=1.5)
     costs = layered.costmap
     for y in (-0.4, 0.0, 0.5, 0.8):
         assert costs.cost_at(1.4, y) == 254
@@ -58,8 +58,8 @@ def test_prediction_time_is_how_far_the_way_goes():
     assert (short == 254).sum() < 0.5 * (long == 254).sum()
 
 
-def test_nothing_is_marked_where_the_robot_stands():
-    """Somebody walks towards the robot and would pass through it; below it, the layer below shows through."""
+def test_a_way_over_the_robot_can_be_left():
+    """Somebody walks towards the robot and would pass through it: the way costs, but is not lethal."""
     layer = MovingObstacleLayer(
         MovingObstacleLayerParameters(prediction_time=3.0), NavigationContext(footprint=Footprint.circle(0.2))
     )
@@ -68,5 +68,17 @@ def test_nothing_is_marked_where_the_robot_stands():
         layer.add_scan("scan", scan(ROBOT, [(2.2 - k / 10, 0.0, 0.2)]), ROBOT, k / 10)
         layered.update(ROBOT, k / 10)
     costs = layered.costmap
-    assert costs.cost_at(0.6, 0.0) == costs.cost_at(-0.6, 0.0) == 254
+    assert 200 <= costs.cost_at(0.6, 0.0) == costs.cost_at(-0.6, 0.0) < 253
+    assert costs.cost_at(0.0, 0.0) == 0
     assert not FootprintCollisionChecker(costs, Footprint.circle(0.2)).in_collision(ROBOT)
+
+
+def test_a_way_that_a_part_of_the_robot_reaches_into_is_lethal_but_not_below_it():
+    layer = MovingObstacleLayer(None, NavigationContext(footprint=Footprint.circle(0.4)))
+    layered = LayeredCostmap(CostmapParameters(rolling_window=True, width=6.0, height=6.0), [layer])
+    for k in range(11):
+        layer.add_scan("scan", scan(ROBOT, [(0.6, -1.6 + k / 10, 0.1)]), ROBOT, k / 10)
+        layered.update(ROBOT, k / 10)
+    costs = layered.costmap
+    assert costs.cost_at(0.65, 0.0) == 254
+    assert not FootprintCollisionChecker(costs, Footprint.circle(0.4)).in_collision(ROBOT)

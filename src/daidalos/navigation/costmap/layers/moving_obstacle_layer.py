@@ -10,10 +10,20 @@ from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.contracts import Input, Layer, NavigationContext
-from daidalos.navigation.costmap.costmap import LETHAL_OBSTACLE, Bounds, Costmap, Window
+from daidalos.navigation.costmap.costmap import (
+    INSCRIBED_INFLATED_OBSTACLE,
+    LETHAL_OBSTACLE,
+    NO_INFORMATION,
+    Bounds,
+    Costmap,
+    Window,
+)
 from daidalos.navigation.costmap.footprint import fill_polygon
 from daidalos.navigation.costmap.observation import Observation
 from daidalos.navigation.tracking import MovingObstacleTracker, Track
+
+_COST_AROUND_ROBOT = INSCRIBED_INFLATED_OBSTACLE - 13
+"""Cost of a moving obstacle's way in which the robot stands."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +40,7 @@ class MovingObstacleLayerParameters(Parameters):
     enabled: bool = parameter(True, "Whether the layer is used.")
     observation_sources: str = parameter("scan", "Names of the lidars, with spaces between them.", read_only=True)
     sources: Mapping[str, TrackedScan] = per_name(TrackedScan, by="observation_sources", at="")
-    prediction_time: float = parameter(1.5, "How far ahead moving obstacles are predicted.", unit="s", minimum=0.0)
+    prediction_time: float = parameter(2.5, "How far ahead moving obstacles are predicted.", unit="s", minimum=0.0)
     min_speed: float = parameter(0.25, "Speed above which an obstacle moves.", unit="m/s", minimum=0.0, read_only=True)
     max_width: float = parameter(
         1.0, "Width up to which something is an obstacle of its own.", unit="m", above=0.0, read_only=True
@@ -42,7 +52,8 @@ class MovingObstacleLayer(Layer):
     """Layer of the ground that tracked obstacles will pass soon, at constant velocity; lethal.
 
     The layer of the obstacles themselves stands below it, inflation above. Nothing is marked where the robot stands:
-    whoever comes towards it will not pass through it, and it may drive away.
+    whoever comes towards it will not pass through it, and it may drive away. The way of an obstacle in which the robot
+    stands already has high costs instead of lethal ones, so that the robot can leave it.
     """
 
     names = ("daidalos::MovingObstacleLayer",)
@@ -57,6 +68,7 @@ class MovingObstacleLayer(Layer):
         p = self.parameters
         self._trackers = {name: MovingObstacleTracker(p.max_width, p.min_speed) for name in p.sources}
         self._strips: list[tuple[Array, Array, float]] = []
+        self._robot = np.zeros(2)
         self._under_robot = self.context.footprint.at(np.zeros(3))
 
     @property
@@ -78,6 +90,7 @@ class MovingObstacleLayer(Layer):
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
         """Include where obstacles were predicted before, and where they are now."""
         p = self.parameters
+        self._robot = robot_pose[:2]
         self._under_robot = self.context.footprint.at(robot_pose)
         for strip in self._strips:
             bounds = bounds.including(_bounds(*strip))
@@ -113,7 +126,11 @@ class MovingObstacleLayer(Layer):
             cells = np.stack([x, y], axis=-1)
             points = costmap.origin + (cells + 0.5) * costmap.resolution
             near = _distances(points, begin, end) <= radius
-            costmap.costs[part.slices][near] = LETHAL_OBSTACLE
+            reach = radius + 0.5 * self.context.footprint.inscribed_radius
+            holds_robot = bool(_distances(self._robot, begin, end) <= reach)
+            cost = _COST_AROUND_ROBOT if holds_robot else LETHAL_OBSTACLE
+            costs = costmap.costs[part.slices]
+            costs[near] = np.where(costs[near] == NO_INFORMATION, cost, np.maximum(costs[near], cost))
 
     def clear(self, keep: Window, *, inside: bool) -> None:
         """Forget all tracks."""
