@@ -7,8 +7,8 @@ the process, matching by QoS and decoding are the session's, so that they are al
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, Protocol
 
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
@@ -109,6 +109,25 @@ class BackendClient(ABC):
         """Stop; outstanding responses are dropped."""
 
 
+class Receiver(Protocol):
+    """Receiving of samples, done by whoever has entered, and by a thread of the backend's own where nobody does."""
+
+    def enter(self) -> bool:
+        """Take over receiving; return False where another thread does it at the moment."""
+
+    def wait(self, timeout_ns: int) -> Sequence[int]:
+        """Wait until something comes or `wake` is called, at most so long; return it for `handle`."""
+
+    def handle(self, numbers: Sequence[int]) -> None:
+        """Pass on what `wait` has returned, without waiting for room in a queue."""
+
+    def leave(self) -> None:
+        """Stop receiving."""
+
+    def wake(self) -> None:
+        """End the wait; from any thread."""
+
+
 class Backend(ABC):
     """Membership in a domain through one middleware."""
 
@@ -116,6 +135,8 @@ class Backend(ABC):
     """Such as ``rmw_zenoh_cpp``."""
     wide: int
     """Bytes that a character of a wide string takes on this wire."""
+    receiver: Receiver | None = None
+    """Lets a thread that waits anyway receive; None where only the middleware's own threads do."""
 
     @abstractmethod
     def start(self, graph: Graph) -> None:
@@ -149,9 +170,13 @@ class Backend(ABC):
 
     @abstractmethod
     def declare_subscription(
-        self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
+        self, key: str, endpoint: EndpointInfo, on_sample: Callable[..., Any]
     ) -> BackendSubscription:
-        """Declare a subscription; `on_sample` is called on the receiving thread."""
+        """Declare a subscription; `on_sample` is called on the receiving thread.
+
+        It may wait for room in the subscription's queue, or, with ``may_wait=False``, refuse a sample by returning
+        False; it is then to be offered again.
+        """
 
     @abstractmethod
     def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:

@@ -135,24 +135,31 @@ class Subscription:
         while (taken := self.take()) is not None:
             sink(taken[0])
 
-    def accept(self, sample: Any) -> None:
-        """Queue a sample of another process."""
+    def accept(self, sample: Any, may_wait: bool = True) -> bool:
+        """Queue a sample of another process; return False where that would have to wait for room and may not."""
+        if not may_wait and self._is_full() and self._take_interval <= _FAST_NS:
+            return False
         item = (None, sample, time.time_ns())
         if self._refused or self._observers:
             remote = self._remote
             if remote is None:
-                return
+                return True
             info = remote.info(sample, item[2])
             if info.gid in self._refused:
-                return
+                return True
             self._notify(info)
-        if self._limit is not None and len(self.queue) >= self._limit:
+        if self._is_full():
             self._wait_for_space()
         self.queue.append(item)
         if self.sink is not None:
             self.drain_into(self.sink)
         else:
             self.on_ready()
+        return True
+
+    def _is_full(self) -> bool:
+        """Return whether a reliable subscription's queue is full."""
+        return self._limit is not None and len(self.queue) >= self._limit
 
     def observe(self, observer: Callable[[SampleInfo], None]) -> None:
         """Call `observer` with every sample, on the thread that queues it."""

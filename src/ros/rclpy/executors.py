@@ -117,6 +117,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
             if self._is_shutdown:
                 raise ShutdownException()
             self._nodes[node] = None
+        self._ready.receiver = node.handle.session.backend.receiver
         node._rcl_attach_executor(self)
         return True
 

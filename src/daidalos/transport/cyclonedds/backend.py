@@ -97,7 +97,7 @@ class CycloneBackend(Backend):
             self._registry.register(Peer(self._gid[:PREFIX].hex(), ()))
         self._started = time.monotonic()
         self._taker = SampleReader(library)
-        self._reception = Reception(library, self._participant, "dds")
+        self.receiver = self._reception = Reception(library, self._participant, "dds")
         info_type = names.DISCOVERY_TYPE
         info_hash = names.write_user_data(typehash=names.discovery_type_hash())
         info_reader = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_READER_QOS, info_hash, writes=False)
@@ -178,7 +178,7 @@ class CycloneBackend(Backend):
         return DdsPublisher(self._library, self._reception, remote, self._closer(key, endpoint))
 
     def declare_subscription(
-        self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
+        self, key: str, endpoint: EndpointInfo, on_sample: Callable[..., bool]
     ) -> BackendSubscription:
         """Return the reader and announce its node."""
         _, reader = self._declare(key, endpoint)

@@ -25,7 +25,7 @@ from daidalos.transport.cyclonedds.library import (
     SampleInfo,
 )
 from daidalos.transport.cyclonedds.qos import read_qos, user_data_of
-from daidalos.transport.cyclonedds.reception import Paced, Reception, Sample, SampleReader
+from daidalos.transport.cyclonedds.reception import Handler, Paced, Reception, Sample, SampleReader
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
 
@@ -113,7 +113,7 @@ class Discovery:
             reader = library.check(library.dds_create_reader(participant, topic, None, None), "watch the domain")
             self._reception.add(reader, self._taking(reader, handler))
 
-        self._reception.add(info_reader, lambda: taker.take_all(info_reader, self._on_info))
+        self._reception.add(info_reader, lambda _: taker.take_all(info_reader, self._on_info))
 
     def wake(self) -> None:
         """List the local nodes for others soon."""
@@ -145,12 +145,12 @@ class Discovery:
         known = tuple(self._participants.items())  # a copy: the receiving thread changes it
         return all(participant.enclave is None or self.is_discovered(prefix) for prefix, participant in known)
 
-    def _taking(self, reader: int, handler: Callable[[int, SampleInfo], None]) -> Callable[[], None]:
+    def _taking(self, reader: int, handler: Callable[[int, SampleInfo], None]) -> Handler:
         """Return a callback that takes all samples of a built-in reader and updates the graph."""
         library = self._library
         infos = (SampleInfo * _BATCH)()
 
-        def take() -> None:
+        def take(_: bool) -> None:
             while True:
                 pointers = (c.c_void_p * _BATCH)()
                 loan = c.cast(pointers, c.POINTER(c.c_void_p))

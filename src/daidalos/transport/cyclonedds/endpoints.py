@@ -61,7 +61,7 @@ class DdsPublisher(BackendPublisher):
             self._has_readers = status.current_count > 0
             on_change()
 
-        self._reception.add(self._writer.entity, update, PUBLICATION_MATCHED_STATUS)
+        self._reception.add(self._writer.entity, lambda _: update(), PUBLICATION_MATCHED_STATUS)
 
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample."""
@@ -86,14 +86,19 @@ class DdsSubscription(BackendSubscription):
         taker: SampleReader,
         reception: Reception,
         reader: int,
-        on_sample: Callable[[Any], None],
+        on_sample: Callable[..., bool],
         gid_of: Callable[[int, int], bytes],
         on_close: Callable[[], None],
     ) -> None:
         self._reader = reader
+        self._taker = taker
         self._gid_of = gid_of
         self._on_close = on_close
-        reception.add(reader, lambda: taker.take_all(reader, on_sample))
+
+        def offer(sample: Sample) -> bool:
+            return on_sample(sample, may_wait=False)
+
+        reception.add(reader, lambda may_wait: taker.take_all(reader, on_sample if may_wait else offer))
 
     def data(self, sample: Any) -> bytes:
         """Return the sample's bytes."""
@@ -107,6 +112,7 @@ class DdsSubscription(BackendSubscription):
     def close(self) -> None:
         """Delete the reader."""
         self._on_close()
+        self._taker.forget(self._reader)
 
 
 class DdsService(BackendService):
@@ -128,7 +134,7 @@ class DdsService(BackendService):
         self._on_close = on_close
         self._reachable: set[int] = set()
         self._lock = threading.Lock()
-        reception.add(reader, lambda: taker.take_all(reader, on_request))
+        reception.add(reader, lambda _: taker.take_all(reader, on_request))
 
     def request(self, item: Any) -> tuple[bytes, RequestId, int]:
         """Return the request's bytes, its identity and its source stamp."""
@@ -213,7 +219,7 @@ class DdsClient(BackendClient):
             if sample.data[_ENCAPSULATION : _ENCAPSULATION + 8] == mine:
                 on_response(sample)
 
-        reception.add(reader, lambda: taker.take_all(reader, accept))
+        reception.add(reader, lambda _: taker.take_all(reader, accept))
 
     def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
         """Send one request."""

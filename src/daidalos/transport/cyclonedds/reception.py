@@ -1,4 +1,4 @@
-"""Receiving thread that waits for readers and passes their samples on."""
+"""Waiting for readers, and passing their samples on."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import itertools
 import logging
 import threading
 import time
-from collections.abc import Callable
-from typing import NamedTuple, TypeVar
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 from daidalos.transport.cyclonedds.library import (
     ANY_STATE,
@@ -18,6 +18,7 @@ from daidalos.transport.cyclonedds.library import (
     Library,
     SampleInfo,
 )
+from daidalos.transport.cyclonedds.role import Role
 
 _LOGGER = logging.getLogger(__name__)
 _BATCH = 64
@@ -27,6 +28,8 @@ _PACE = 10
 _MAX_PAUSE_NS = 500_000_000
 _AT_ONCE_NS = 1
 Result = TypeVar("Result")
+Handler = Callable[[bool], bool | None]
+"""What is called when something has come; see `Reception.add`."""
 
 
 class Sample(NamedTuple):
@@ -38,7 +41,10 @@ class Sample(NamedTuple):
 
 
 class Reception:
-    """Thread that waits for data on any number of readers.
+    """Thread that waits for data on any number of readers, unless another thread that waits anyway does it.
+
+    A message that its own executor receives wakes one thread instead of two. The executor takes over by `enter`, and
+    calls `leave` before it runs callbacks; where it does not come back soon, the reception's own thread goes on.
 
     Parameters
     ----------
@@ -48,7 +54,7 @@ class Reception:
         The thread's.
     on_batch
         Called on the thread after what has come was handled, and after `wake`; returns the time in nanoseconds after
-        which it is called again though nothing comes, `INFINITE` for never.
+        which it is called again though nothing comes, `INFINITE` for never. Who uses it does not `enter`.
     """
 
     def __init__(
@@ -57,24 +63,28 @@ class Reception:
         self._library = library
         self._on_batch = on_batch
         self._number = itertools.count(_WAKE + 1).__next__
-        self._handlers: dict[int, Callable[[], None]] = {}
+        self._handlers: dict[int, Handler] = {}
         self._numbers: dict[int, int] = {}
+        self._held_back: dict[int, None] = {}
         self._closed = False
         self._waitset = library.check(library.dds_create_waitset(participant), "make a waitset")
         self._guard = library.check(library.dds_create_guardcondition(participant), "make a guard condition")
         library.check(library.dds_waitset_attach(self._waitset, self._guard, _WAKE), "attach a guard condition")
+        self._ready = (c.c_ssize_t * _BATCH)()
+        self._role = Role()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
-    def add(self, entity: int, on_event: Callable[[], None], status: int = DATA_AVAILABLE_STATUS) -> None:
-        """Call `on_event` on the thread whenever a status of a reader or writer is raised.
+    def add(self, entity: int, on_event: Handler, status: int = DATA_AVAILABLE_STATUS) -> None:
+        """Call `on_event` on the receiving thread whenever a status of a reader or writer is raised.
 
         Parameters
         ----------
         entity
             The reader or writer.
         on_event
-            What resets the status: where data is available, by taking all samples.
+            What resets the status: where data is available, by taking all samples. It is told whether it may wait
+            for room in a queue, and returns whether everything was passed on; else it is called again.
         status
             The status that is waited for.
         """
@@ -92,39 +102,70 @@ class Reception:
             self._library.dds_waitset_detach(self._waitset, reader)
 
     def wake(self) -> None:
-        """Call `on_batch` on the thread."""
+        """End the wait, and call `on_batch`."""
         self._library.dds_set_guardcondition(self._guard, True)
 
     def close(self) -> None:
-        """End the thread."""
+        """End the thread; nobody receives any more."""
         self._closed = True
         self.wake()
+        self._role.end()
         if threading.current_thread() is not self._thread:
             self._thread.join(_JOIN_S)
+            self._role.wait_until_free(_JOIN_S)
+
+    def enter(self) -> bool:
+        """Take over receiving; return False where the own thread does it at the moment, which then hands over soon."""
+        if self._closed or not self._role.enter():
+            return False
+        if self._held_back:
+            self._handle((), may_wait=False)
+            if self._held_back:  # what has no room is another executor's
+                self._role.give_back()
+                return False
+        return True
+
+    def wait(self, timeout_ns: int) -> Sequence[int]:
+        """Wait until something comes or `wake` is called, between `enter` and `leave`; return it for `handle`."""
+        count = self._library.dds_waitset_wait(self._waitset, self._ready, _BATCH, timeout_ns)
+        return self._ready[:count] if count > 0 else ()
+
+    def handle(self, numbers: Sequence[int]) -> None:
+        """Pass on what `wait` has returned, without waiting for room in a queue."""
+        self._handle(numbers, may_wait=False)
+
+    def leave(self) -> None:
+        """Stop receiving."""
+        self._role.leave()
+
+    def _handle(self, numbers: Sequence[int], *, may_wait: bool) -> None:
+        if self._held_back:
+            numbers = [*self._held_back, *(number for number in numbers if number not in self._held_back)]
+            self._held_back.clear()
+        for number in numbers:
+            if number == _WAKE:
+                self._library.dds_set_guardcondition(self._guard, False)
+                continue
+            handler = self._handlers.get(number)
+            if handler is not None and _call(handler, may_wait) is False:  # None where it was removed meanwhile
+                self._held_back[number] = None
 
     def _run(self) -> None:
-        library, numbers = self._library, (c.c_ssize_t * _BATCH)()
-        timeout = INFINITE
         while not self._closed:
-            count = library.dds_waitset_wait(self._waitset, numbers, _BATCH, timeout)
-            if count < 0:
-                return
-            for number in numbers[:count]:
-                if number == _WAKE:
-                    library.dds_set_guardcondition(self._guard, False)
-                    if self._closed:
-                        return
-                    continue
-                handler = self._handlers.get(number)
-                if handler is not None:  # else removed meanwhile
-                    _call(handler)
-            timeout = _call(self._on_batch) or INFINITE
+            with self._role.own():
+                timeout = 0 if self._held_back else INFINITE
+                while not self._closed:
+                    self._handle(self.wait(timeout), may_wait=True)
+                    timeout = _call(self._on_batch) or INFINITE
+                    if self._role.is_wanted:
+                        break
+            self._role.stand_by()
 
 
-def _call(function: Callable[[], Result]) -> Result | None:
+def _call(function: Callable[..., Result], *arguments: Any) -> Result | None:
     """Call a function; a failure is logged, since one bad entity must not silence all others."""
     try:
-        return function()
+        return function(*arguments)
     except Exception:
         _LOGGER.exception("receiving failed")
         return None
@@ -164,7 +205,7 @@ class Paced:
 
 
 class SampleReader:
-    """Reader of samples for a single thread.
+    """Reader of samples, for one thread at a time.
 
     Parameters
     ----------
@@ -179,20 +220,49 @@ class SampleReader:
         self._infos = (SampleInfo * _BATCH)()
         self._vector = IoVector()
         self._reference = c.byref(self._vector)
+        self._refused: dict[int, Sequence[Sample]] = {}
 
-    def take_all(self, reader: int, accept: Callable[[Sample], None]) -> None:
-        """Pass every sample of a reader to `accept`; samples without data, such as disposals, are skipped."""
+    def take_all(self, reader: int, accept: Callable[[Sample], bool | None]) -> bool:
+        """Pass the samples of a reader to `accept`; samples without data, such as disposals, are skipped.
+
+        Parameters
+        ----------
+        reader
+            The reader.
+        accept
+            Is called with each sample; what it refuses by returning False is offered again by the next call.
+
+        Returns
+        -------
+        bool
+            Whether all were accepted.
+        """
+        refused = self._refused.pop(reader, ())
+        for index, sample in enumerate(refused):
+            if accept(sample) is False:
+                self._refused[reader] = refused[index:]
+                return False
         library, infos, buffers = self._library, self._infos, self._buffers
         while True:
             count: int = library.dds_takecdr(reader, self._pointer, _BATCH, infos, ANY_STATE)
+            kept: list[Sample] = []
             for index in range(count):
                 info = infos[index]
                 data = self._copy(buffers[index]) if info.valid_data else None
                 library.ddsi_serdata_unref(buffers[index])
                 if data is not None:
-                    accept(Sample(data, info.source_timestamp, info.publication_handle))
+                    sample = Sample(data, info.source_timestamp, info.publication_handle)
+                    if kept or accept(sample) is False:
+                        kept.append(sample)
+            if kept:
+                self._refused[reader] = kept
+                return False
             if count < _BATCH:
-                return
+                return True
+
+    def forget(self, reader: int) -> None:
+        """Drop what was refused of a reader that is being deleted."""
+        self._refused.pop(reader, None)
 
     def _copy(self, serialized: int | None) -> bytes:
         library, vector = self._library, self._vector

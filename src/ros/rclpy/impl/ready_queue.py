@@ -9,9 +9,13 @@ import time
 from collections import deque
 from typing import Any
 
+from daidalos.transport.backend import Receiver
+from rclpy.impl import signal_watch
 from rclpy.impl.timer import TimerHandle
 
 _TIDY = 64
+_FOREVER = 2**63 - 1
+_MAIN_THREAD = threading.main_thread().ident
 
 
 class ReadyQueue:
@@ -19,6 +23,12 @@ class ReadyQueue:
 
     The thread that waits sleeps on a lock which who fills the queue releases. Python's own queues are no choice: a
     timed ``SimpleQueue.get`` of CPython may sleep for ever when its time runs out while it wakes.
+
+    Attributes
+    ----------
+    receiver
+        Where the middleware lets a thread that waits receive samples itself, which saves the change of threads for
+        each message; None where it does not.
     """
 
     def __init__(self) -> None:
@@ -33,6 +43,8 @@ class ReadyQueue:
         self._count = itertools.count().__next__
         self._waiting_thread: int | None = None
         self._notifying_thread: int | None = None
+        self.receiver: Receiver | None = None
+        self._receives = False
 
     def empty(self) -> bool:
         """Return whether nothing waits to be taken."""
@@ -42,7 +54,7 @@ class ReadyQueue:
         """Add an item, and wake who waits."""
         self._items.append(item)
         # What `get` itself adds, for timers that are due, it finds without being woken.
-        if self._gate.locked() and self._notifying_thread != threading.get_ident():
+        if self._notifying_thread != threading.get_ident():
             self._open()
 
     def put_first(self, item: Any) -> None:
@@ -51,10 +63,13 @@ class ReadyQueue:
         self._open()
 
     def _open(self) -> None:
-        try:  # noqa: SIM105 - several times faster than `suppress`, for each message
-            self._gate.release()
-        except RuntimeError:
-            pass  # it is open
+        if self._gate.locked():
+            try:  # noqa: SIM105 - several times faster than `suppress`, for each message
+                self._gate.release()
+            except RuntimeError:
+                pass  # it is open
+        if self._receives and self.receiver is not None:
+            self.receiver.wake()
 
     def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
         """Notify a timer when ``time.monotonic_ns()`` reaches a deadline."""
@@ -94,14 +109,34 @@ class ReadyQueue:
             if items:
                 self._was_first = False
                 return items.popleft()
-            if until is None:
-                self._gate.acquire()
-                continue
-            left = until - now()
+            left = _FOREVER if until is None else until - now()
             if left > 0:
-                self._gate.acquire(True, left / 1e9)
+                receiver = self.receiver
+                if receiver is None or not self._receive(receiver, left):
+                    self._gate.acquire(True, -1 if until is None else left / 1e9)
             elif until == deadline_ns:
                 raise TimeoutError
+
+    def _receive(self, receiver: Receiver, timeout_ns: int) -> bool:
+        """Wait for samples, and queue whom they make ready; return False where another thread does that."""
+        is_main = self._waiting_thread == _MAIN_THREAD
+        if is_main and not signal_watch.is_watching():
+            return False  # nothing would end the wait for a signal's handler
+        if not receiver.enter():
+            return False
+        try:
+            self._receives = True
+            if is_main:
+                signal_watch.on_signal(receiver.wake)
+            ready = () if self._items or self._first else receiver.wait(timeout_ns)
+            self._receives = False
+            receiver.handle(ready)
+        finally:
+            self._receives = False
+            if is_main:
+                signal_watch.on_signal(None)
+            receiver.leave()
+        return True
 
     def _notify_timers(self, until: int | None) -> int | None:
         """Notify the timers that are due, and return the earliest of `until` and the next timer's deadline."""

@@ -24,6 +24,7 @@ _runs = 0
 _reader: int | None = None
 _writer: int | None = None
 _watched: weakref.WeakSet[Any] = weakref.WeakSet()
+_wake: Callable[[], None] | None = None
 
 
 def watched(handler: Callable[[int, FrameType | None], Any]) -> Callable[[int, FrameType | None], Any]:
@@ -70,6 +71,17 @@ def stop() -> None:
     _reader = _writer = None
 
 
+def is_watching() -> bool:
+    """Return whether signals are seen."""
+    return _writer is not None
+
+
+def on_signal(wake: Callable[[], None] | None) -> None:
+    """Call `wake` when a signal comes, so that the main thread returns from a wait that signals do not end."""
+    global _wake
+    _wake = wake
+
+
 @contextmanager
 def watching(number: int) -> Iterator[None]:
     """Watch a signal that somebody handles already, as long as the ``with`` block lasts."""
@@ -96,6 +108,7 @@ def _watch(reader: int) -> None:
     while True:
         before = _runs
         poll.poll()
+        _end_wait()
         time.sleep(_TIMEOUT_S)
         numbers = _take(reader)
         if numbers is None or reader != _reader:
@@ -105,7 +118,14 @@ def _watch(reader: int) -> None:
         elif numbers and before != resent and main.ident is not None and signal.getsignal(numbers[-1]) in _watched:
             resent = before
             signal.pthread_kill(main.ident, numbers[-1])
+            _end_wait()
     os.close(reader)
+
+
+def _end_wait() -> None:
+    wake = _wake
+    if wake is not None:
+        wake()
 
 
 def _take(reader: int) -> bytes | None:
