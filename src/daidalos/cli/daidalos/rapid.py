@@ -56,6 +56,14 @@ class RapidVerb:
         run.add_argument(
             "--home", type=Path, metavar="FOLDER", help="folder that HOME: stands for (default: that of the program)"
         )
+        run.add_argument("--robot", metavar="ARM", help="arm that moves, such as irb120 (default: one without joints)")
+        run.add_argument(
+            "--sensor",
+            action="append",
+            default=[],
+            metavar="NAME=CONDITION",
+            help="input that is 1 where the tool's position in the base is so, such as diTouch=z<120 [mm]",
+        )
         run.add_argument("--max-time", type=float, metavar="S", help="end after so many seconds of robot time")
         run.set_defaults(_command=_run)
 

@@ -13,6 +13,8 @@ from daidalos.cli.daidalos.launching import INTERRUPTED
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
+    from daidalos.industry.rapid.runtime.board import Board
+    from daidalos.industry.rapid.runtime.robot import Robot
     from daidalos.industry.rapid.runtime.task import Outcome, Task
 
 ENDLESS_S = 2.0
@@ -36,10 +38,11 @@ def run_program(args: argparse.Namespace) -> int:
     if blocking:
         return 2
     board = Board(signals, dict(_parse_signal(text) for text in args.signal))
+    robot = make_robot(args.robot, args.sensor, board)
     pace = None if args.fast else Pace()
     try:
         home = args.home or (args.path if args.path.is_dir() else args.path.parent)
-        task = Task(modules, checker, None, board, None, pace, datetime.now(), home, args.max_time)
+        task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time)
     except FatalError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -54,6 +57,38 @@ def run_program(args: argparse.Namespace) -> int:
     return status
 
 
+def make_robot(name: str | None, sensors: list[str], board: Board, sampling: float = 0.0) -> Robot | None:
+    """Return the arm of a name, or None without one.
+
+    Raises
+    ------
+    UserError
+        Where no arm has this name, or a sensor is not one.
+    """
+    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+    from daidalos.industry.rapid.runtime.sensors import parse_sensor
+    from daidalos.industry.robots import arm_named
+
+    if name is None:
+        if sensors:
+            raise UserError("--sensor needs an arm: add --robot, such as --robot irb120")
+        return None
+    try:
+        arm = arm_named(name)
+        conditions = dict(parse_sensor(text) for text in sensors)
+    except ValueError as error:
+        raise UserError(str(error)) from None
+    return ArmRobot(arm, sensors=conditions, set_signal=board.set, sampling=sampling)
+
+
+def _warn(task: Task) -> None:
+    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+
+    if isinstance(task.robot, ArmRobot):
+        for warning in task.robot.planner.warnings:
+            print(f"warning: {warning}", file=sys.stderr)
+
+
 def _parse_signal(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     try:
@@ -63,8 +98,7 @@ def _parse_signal(text: str) -> tuple[str, float]:
 
 
 def _report(task: Task, outcome: Outcome, procedure: str) -> int:
-    from daidalos.industry.rapid.runtime.robot import SimpleRobot
-
+    _warn(task)
     if outcome.reason == "error":
         print(f"error: {outcome.message}", file=sys.stderr)
         for place in outcome.calls[1:]:
@@ -75,7 +109,7 @@ def _report(task: Task, outcome: Outcome, procedure: str) -> int:
         return INTERRUPTED
     how = "ended" if outcome.reason == "end" else f"ended by {outcome.reason}"
     where = f" in {outcome.message}" if outcome.message else ""
-    moves = len(task.robot.moves) if isinstance(task.robot, SimpleRobot) else 0
+    moves = task.robot.count
     count = f"{moves} movement{'' if moves == 1 else 's'}"
     print(f"{procedure} {how}{where} after {outcome.time:.3f} s, {count}", file=sys.stderr)
     return 0

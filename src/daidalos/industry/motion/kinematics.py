@@ -48,6 +48,10 @@ class Singularity(IntFlag):
     SHOULDER = 4
 
 
+class JointRangeError(ValueError):
+    """Angle outside of the range of its axis."""
+
+
 @dataclass(frozen=True)
 class Solutions:
     """Solutions of the inverse kinematics, in the order of `cfx`.
@@ -160,7 +164,9 @@ def joints_of_configuration(
     ------
     ValueError
         Where cfx is none of 0 to 7, the pose is out of reach with it, its angles lie in other quadrants than cf1, cf4
-        and cf6 say (by more than 1e-3 rad), or outside the limits; the message names which.
+        and cf6 say (by more than 1e-3 rad); the message names which.
+    JointRangeError
+        Where an angle is outside the limits.
     """
     cfx = configuration[3]
     if cfx not in range(8):
@@ -180,7 +186,7 @@ def joints_of_configuration(
         angles[axis] = start + past
     for number, (angle, axis_limits) in enumerate(zip(angles, arm.axes, strict=True), 1):
         if not axis_limits.lower <= angle <= axis_limits.upper:
-            raise ValueError(
+            raise JointRangeError(
                 f"axis {number} would be at {math.degrees(angle):.3f} deg, outside "
                 f"{math.degrees(axis_limits.lower):g} to {math.degrees(axis_limits.upper):g} deg"
             )

@@ -26,6 +26,8 @@ ABB_ARMS = (
         mass=25.0,
         reach=0.58,
         source="ABB product specification IRB 120, 3HAC035960-001",
+        acceleration_time=0.1,
+        ramp_time=0.05,
     ),
     Arm(
         name="irb1600",
@@ -48,6 +50,8 @@ ABB_ARMS = (
         mass=250.0,
         reach=1.45,
         source="ABB product specification IRB 1600, 3HAC023604-001",
+        acceleration_time=0.2,
+        ramp_time=0.07,
     ),
     Arm(
         name="irb6700",
@@ -70,5 +74,7 @@ ABB_ARMS = (
         mass=1280.0,
         reach=3.20,
         source="ABB product specification IRB 6700, 3HAC044265-001",
+        acceleration_time=0.35,
+        ramp_time=0.1,
     ),
 )

@@ -72,6 +72,10 @@ class Arm:
         Greatest distance of the centre of the wrist from axis 1 as the maker states it [m].
     source : str
         Document of the maker that the figures refer to.
+    acceleration_time : float
+        Time in which each axis reaches its full speed [s]: an estimate, since makers do not publish it.
+    ramp_time : float
+        Time in which each axis reaches its full acceleration [s], an estimate too.
     """
 
     name: str
@@ -87,12 +91,17 @@ class Arm:
     mass: float
     reach: float
     source: str
+    acceleration_time: float = 0.3
+    ramp_time: float = 0.1
 
     def __post_init__(self) -> None:
         """Check the dimensions and the axes."""
         for name in ("base_height", "lower_arm", "forearm"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{self.name}: {name} is {getattr(self, name)}, but must be greater than 0 m")
+        for name in ("acceleration_time", "ramp_time"):
+            if not getattr(self, name) > 0.0:
+                raise ValueError(f"{self.name}: {name} is {getattr(self, name)}, but must be greater than 0 s")
         for number, axis in enumerate(self.axes, 1):
             if not (axis.lower < axis.upper and axis.speed > 0.0):
                 raise ValueError(f"{self.name}: axis {number} needs lower < upper and a speed greater than 0")
@@ -113,6 +122,11 @@ class Arm:
     def speeds(self) -> NDArray[np.float64]:
         """Return the greatest speeds of the axes [rad/s]."""
         return np.array([axis.speed for axis in self.axes])
+
+    @property
+    def accelerations(self) -> NDArray[np.float64]:
+        """Return the greatest accelerations of the axes [rad/s^2]."""
+        return self.speeds / self.acceleration_time
 
     @property
     def wrist_reach(self) -> float:

@@ -125,9 +125,9 @@ class ExpressionTranslator:
             return "_task.intno"
         place = self.place(node.name)
         if place is None:
-            return f"_task.signals.value({node.name.text!r})"
+            return f"_task.signal({node.name.text!r})"
         if place.type.name.startswith("signal"):
-            return f"_task.signals.value({place.read()})"
+            return f"_task.signal({place.read()})"
         return place.read()
 
     def _record(self, node: tree.Expression) -> str:

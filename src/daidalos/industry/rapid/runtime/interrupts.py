@@ -33,7 +33,8 @@ class Interrupts:
         self._task = task
         self._by_number: dict[float, Interrupt] = {}
         self._queue: list[float] = []
-        self._is_serving = False
+        self.is_serving = False
+        """Whether a trap runs."""
         self.is_enabled = True
         task.signals.listeners.append(self._on_signal)
 
@@ -71,9 +72,9 @@ class Interrupts:
             if one.due is not None and one.due <= self._task.time:
                 one.due = one.due + one.period if one.period and not one.is_single else None
                 self._occur(number, one)
-        if self._is_serving or not self.is_enabled:
+        if self.is_serving or not self.is_enabled:
             return
-        self._is_serving = True
+        self.is_serving = True
         try:
             while self._queue:
                 number = self._queue.pop(0)
@@ -81,7 +82,7 @@ class Interrupts:
                     self._task.intno = number
                     self._by_number[number].trap()
         finally:
-            self._is_serving = False
+            self.is_serving = False
 
     def _on_signal(self, key: str, value: float) -> None:
         for number, one in list(self._by_number.items()):
@@ -89,6 +90,11 @@ class Interrupts:
                 if one.is_single:
                     one.signal = ""
                 self._occur(number, one)
+
+    def occur(self, number: float) -> None:
+        """Let an interrupt occur, unless it was disconnected meanwhile."""
+        if number in self._by_number:
+            self._occur(number, self._by_number[number])
 
     def _occur(self, number: float, one: Interrupt) -> None:
         if not one.is_asleep:

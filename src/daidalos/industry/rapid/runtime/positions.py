@@ -161,7 +161,6 @@ def current_target(
     task: Task, taskref_: Any = None, taskname_: Any = None, tool_: Any = None, wobj_: Any = None
 ) -> Target:
     """Return where the robot is."""
-    task.pass_time(task.robot.wait_in_position())
     return task.robot.robtarget(tool_ or task.settings.get("tool", TOOL0), wobj_ or task.settings.get("wobj", WOBJ0))
 
 
@@ -175,7 +174,6 @@ def current_position(task: Task, tool_: Any = None, wobj_: Any = None) -> poses.
 @routine("CJointT")
 def current_joints(task: Task, taskref_: Any = None, taskname_: Any = None) -> Target:
     """Return where the joints are."""
-    task.pass_time(task.robot.wait_in_position())
     return task.robot.jointtarget()
 
 

@@ -17,8 +17,10 @@ Implementation = TypeVar("Implementation", bound=Callable[..., Any])
 _routines: dict[str, Callable[..., Any]] = {}
 _MODULES = (
     "mathematics", "strings", "positions", "signals", "dialogs", "timing", "movements", "interrupts", "bytes", "files",
-    "sockets",
+    "sockets", "triggers", "searches",
 )  # fmt: skip
+_TIMED = ("signals", "dialogs", "timing", "interrupts", "files", "sockets")
+_TIMED_ROUTINES = ("crobt", "cjointt", "cpos", "pdispon", "stopmove", "startmove", "stopmovereset", "clearpath")
 
 
 def routine(*names: str) -> Callable[[Implementation], Implementation]:
@@ -48,3 +50,10 @@ def routines() -> dict[str, Callable[..., Any]]:
     """Return all predefined routines that run."""
     _load()
     return dict(_routines)
+
+
+def is_timed(key: str) -> bool:
+    """Return whether the effect or the result of a routine depends on when it runs."""
+    function = _routines.get(key)
+    module = function.__module__.rpartition(".")[2] if function is not None else ""
+    return module in _TIMED or key in _TIMED_ROUTINES

@@ -3,10 +3,60 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 from daidalos.industry.rapid.runtime.poses import IDENTITY, Pose, angle_between, pose_inverse, pose_product
+
+
+@dataclass(frozen=True)
+class MotionSettings:
+    r"""What instructions such as AccSet and ConfL have said about the movements that follow.
+
+    Attributes
+    ----------
+    acceleration, ramp
+        Shares of the acceleration and of its rate of change, 0 to 1 (AccSet).
+    path_acceleration
+        Greatest acceleration along the path [m/s^2] (PathAccLim).
+    checks_line, checks_joint
+        Whether the configuration of a target has to be met (ConfL, ConfJ).
+    turns_wrist
+        Whether a wrist singularity may be passed by turning the tool (SingArea \Wrist).
+    circle
+        How the tool turns on a circle (CirPathMode): ``path``, ``object`` or ``point``.
+    """
+
+    acceleration: float = 1.0
+    ramp: float = 1.0
+    path_acceleration: float = math.inf
+    checks_line: bool = True
+    checks_joint: bool = True
+    turns_wrist: bool = False
+    circle: Literal["path", "object", "point"] = "path"
+
+
+@dataclass(frozen=True)
+class Event:
+    """What happens at a place of a movement.
+
+    Attributes
+    ----------
+    action
+        What to do.
+    distance
+        From the movement's end, mm.
+    is_from_start
+        Whether the distance is from its beginning.
+    time_before
+        Seconds before that place.
+    """
+
+    action: Callable[[], Any]
+    distance: float = 0.0
+    is_from_start: bool = False
+    time_before: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -16,17 +66,21 @@ class Move:
     Attributes
     ----------
     instruction
-        Its name, such as ``MoveL``.
+        ``MoveL``, ``MoveJ``, ``MoveC`` or ``MoveAbsJ``.
     target
-        A robtarget, or a jointtarget for MoveAbsJ and MoveExtJ.
+        A robtarget, or a jointtarget for MoveAbsJ.
     via
         The robtarget on the circle of MoveC, else None.
     speed, zone, tool, wobj
-        speeddata with what ``\V`` says, zonedata, tooldata and wobjdata.
+        speeddata with what ``\V`` and VelSet say, zonedata, tooldata and wobjdata.
     duration
         What ``\T`` says, in seconds; None without it.
     line
         ``file:line`` of the instruction.
+    settings
+        What holds for it besides.
+    events
+        What happens on the way.
     """
 
     instruction: str
@@ -38,6 +92,8 @@ class Move:
     via: list[Any] | None = None
     duration: float | None = None
     line: str = ""
+    settings: MotionSettings = MotionSettings()
+    events: tuple[Event, ...] = ()
 
     def tool_pose(self) -> Pose:
         """Return the pose of the tool's centre point in the base frame at the target, mm."""
@@ -45,34 +101,57 @@ class Move:
 
 
 class Robot(Protocol):
-    """What carries out movements.
+    """What carries out movements while time passes, which only `advance` lets it do; times are in seconds."""
 
-    Each method returns the time in seconds that the movement takes, and raises `RapidError` or `FatalError` where it
-    cannot be done. A planner that looks ahead may return 0 and move later; `wait_in_position` returns what is left.
-    """
-
-    def move_l(self, move: Move) -> float:
-        """Move along a line."""
+    @property
+    def count(self) -> int:
+        """Return how many movements were taken."""
         ...
 
-    def move_j(self, move: Move) -> float:
-        """Move by the joints to a pose."""
+    def order(self, move: Move) -> bool:
+        """Take a movement; return False, with nothing taken, where the robot has to stand first.
+
+        Raises
+        ------
+        RapidError, FatalError
+            Where the movement cannot be done.
+        """
         ...
 
-    def move_c(self, move: Move) -> float:
-        """Move along a circle."""
+    def room(self) -> float:
+        """Return how long the program has to wait before it may order more; infinity while the robot is stopped."""
         ...
 
-    def move_abs_j(self, move: Move) -> float:
-        """Move to joint positions."""
+    def lead(self) -> float:
+        """Return the time until instructions behind the latest movement run: at its end, or at its corner path."""
         ...
 
-    def wait_in_position(self) -> float:
-        """Wait until the robot stands."""
+    def remaining(self) -> float:
+        """Return the time until the robot stands in the latest target; infinity while it is stopped."""
         ...
 
-    def tool_pose(self) -> Pose:
-        """Return the pose of the flange in the base frame, mm."""
+    def advance(self, seconds: float) -> None:
+        """Let time pass."""
+        ...
+
+    def next_event(self) -> float | None:
+        """Return the time until the next event on the path; None where there is none."""
+        ...
+
+    def serve(self) -> None:
+        """Do what is due."""
+        ...
+
+    def stop(self) -> float:
+        """Stop on the path, and return how long that takes."""
+        ...
+
+    def resume(self) -> None:
+        """Go on after a stop."""
+        ...
+
+    def clear(self) -> None:
+        """Forget the rest of the path, where the robot stands."""
         ...
 
     def robtarget(self, tool: list[Any], wobj: list[Any]) -> list[Any]:
@@ -99,39 +178,73 @@ class SimpleRobot:
     _configuration: list[float] = field(default_factory=lambda: [0.0] * 4)
     _external: list[float] = field(default_factory=lambda: [9e9] * 6)
     _joints: list[Any] = field(default_factory=lambda: [[0.0] * 6, [9e9] * 6])
+    _left: float = 0.0
+    _events: list[tuple[float, Event]] = field(default_factory=list)
+    _is_stopped: bool = False
 
-    def move_l(self, move: Move) -> float:
-        """Move along a line."""
-        goal = move.tool_pose()
-        start = pose_product(self._flange, move.tool[1])
-        return self._arrive(move, goal, math.dist(start[0], goal[0]), angle_between(start[1], goal[1]))
+    @property
+    def count(self) -> int:
+        """Return how many movements were taken."""
+        return len(self.moves)
 
-    move_j = move_l
-
-    def move_c(self, move: Move) -> float:
-        """Move along a circle, through the point between."""
-        goal = move.tool_pose()
-        start = pose_product(self._flange, move.tool[1])
-        assert move.via is not None
-        via = pose_product(wobj_pose(move.wobj), [move.via[0], move.via[1]])
-        length = arc_length(start[0], via[0], goal[0])
-        return self._arrive(move, goal, length, angle_between(start[1], goal[1]))
-
-    def move_abs_j(self, move: Move) -> float:
-        """Move to joint positions, at the speed of reorientation."""
-        before, after = self._joints[0], move.target[0]
-        self._joints = [list(after), list(move.target[1])]
-        turned = max(abs(b - a) for a, b in zip(before, after, strict=True))
+    def order(self, move: Move) -> bool:
+        """Take a movement, where none is under way."""
+        if self._left > 0.0:
+            return False
+        if move.instruction == "MoveAbsJ":
+            length, angle = self._turn(move)
+        else:
+            length, angle = self._arrive(move)
         self.moves.append(move)
-        return move.duration if move.duration is not None else _share(turned, move.speed[1])
+        self._left = max(_share(length, move.speed[0]), _share(angle, move.speed[1]))
+        if move.duration is not None:
+            self._left = move.duration
+        speed = length / self._left if self._left > 0.0 else math.inf
+        for event in move.events:
+            before = length - event.distance if event.is_from_start else event.distance
+            self._events.append((min(max(before / speed + event.time_before, 0.0), self._left), event))
+        return True
 
-    def wait_in_position(self) -> float:
-        """Return 0: each movement is done when its instruction ends."""
+    def room(self) -> float:
+        """Return the time that is left of the movement: there is no look-ahead."""
+        return self.remaining()
+
+    lead = room
+
+    def remaining(self) -> float:
+        """Return the time that is left of the movement."""
+        return math.inf if self._is_stopped and self._left > 0.0 else self._left
+
+    def advance(self, seconds: float) -> None:
+        """Let time pass."""
+        if not self._is_stopped:
+            self._left = self._left - seconds if self._left - seconds > 1e-12 else 0.0
+
+    def next_event(self) -> float | None:
+        """Return the time until the next event."""
+        if self._is_stopped or not self._events:
+            return None
+        return max(self._left - max(before for before, _ in self._events), 0.0)
+
+    def serve(self) -> None:
+        """Do what is due."""
+        due = [one for one in self._events if self._left <= one[0] + 1e-9]
+        self._events = [one for one in self._events if one not in due]
+        for _, event in sorted(due, key=lambda one: -one[0]):
+            event.action()
+
+    def stop(self) -> float:
+        """Stop at once."""
+        self._is_stopped = True
         return 0.0
 
-    def tool_pose(self) -> Pose:
-        """Return the pose of the flange in the base frame, mm."""
-        return self._flange
+    def resume(self) -> None:
+        """Go on."""
+        self._is_stopped = False
+
+    def clear(self) -> None:
+        """Forget the rest of the movement."""
+        self._left, self._events = 0.0, []
 
     def robtarget(self, tool: list[Any], wobj: list[Any]) -> list[Any]:
         """Return where the robot is, after the latest movement to a robtarget."""
@@ -142,13 +255,22 @@ class SimpleRobot:
         """Return the joint positions of the latest movement by joints."""
         return [list(self._joints[0]), list(self._joints[1])]
 
-    def _arrive(self, move: Move, goal: Pose, length: float, angle: float) -> float:
+    def _turn(self, move: Move) -> tuple[float, float]:
+        before, after = self._joints[0], move.target[0]
+        self._joints = [list(after), list(move.target[1])]
+        return 0.0, max(abs(b - a) for a, b in zip(before, after, strict=True))
+
+    def _arrive(self, move: Move) -> tuple[float, float]:
+        """Go to a target, and return the length and the angle of the way."""
+        goal = move.tool_pose()
+        start = pose_product(self._flange, move.tool[1])
+        length = math.dist(start[0], goal[0])
+        if move.via is not None:
+            via = pose_product(wobj_pose(move.wobj), [move.via[0], move.via[1]])
+            length = arc_length(start[0], via[0], goal[0])
         self._flange = pose_product(goal, pose_inverse(move.tool[1]))
         self._configuration, self._external = list(move.target[2]), list(move.target[3])
-        self.moves.append(move)
-        if move.duration is not None:
-            return move.duration
-        return max(_share(length, move.speed[0]), _share(angle, move.speed[1]))
+        return length, angle_between(start[1], goal[1])
 
 
 def _share(way: float, speed: float) -> float:

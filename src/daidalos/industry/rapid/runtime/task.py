@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import functools
+import math
 import re
 import socket
 import sys
@@ -34,7 +36,7 @@ from daidalos.industry.rapid.runtime.expressions import ExpressionTranslator
 from daidalos.industry.rapid.runtime.interrupts import Interrupts
 from daidalos.industry.rapid.runtime.names import global_name, python_name
 from daidalos.industry.rapid.runtime.pendant import Pendant, TextPendant
-from daidalos.industry.rapid.runtime.registry import routines
+from daidalos.industry.rapid.runtime.registry import is_timed, routines
 from daidalos.industry.rapid.runtime.robot import Robot, SimpleRobot
 from daidalos.industry.rapid.runtime.translation import FILE, Translation, translate
 from daidalos.industry.rapid.runtime.values import copied, counted, default_value, index_of
@@ -42,6 +44,9 @@ from daidalos.industry.rapid.symbols import DataSymbol, Owned, RoutineSymbol, Ty
 from daidalos.industry.rapid.types import TypeTable
 
 MAX_RETRIES = 4
+STOPPED_POLL = 0.05
+"""Seconds between two looks at whether a stopped robot was started."""
+
 RETRY, TRYNEXT = "RETRY", "TRYNEXT"
 EPOCH = datetime(2000, 1, 1)
 
@@ -138,7 +143,9 @@ class Task:
             known = [one.symbol.name for one in self._routines() if one.symbol.kind == "PROC"]
             return Outcome("error", f"there is no procedure '{name}'{hint(name, known)}")
         try:
-            return self._run(self._namespace[global_name(owned)])
+            outcome = self._run(self._namespace[global_name(owned)])
+            self.robot.advance(self.robot.stop())
+            return outcome
         finally:
             for resource in self.resources:
                 resource.close()
@@ -147,7 +154,7 @@ class Task:
     def _run(self, procedure: Callable[[], Any]) -> Outcome:
         try:
             procedure()
-            self.pass_time(self.robot.wait_in_position())
+            self.wait_for_robot(self.robot.remaining)
         except ProgramEnd as end:
             return Outcome(end.reason, "" if end.reason == "EXIT" else self._where(end), self.time)
         except KeyboardInterrupt as error:
@@ -164,14 +171,48 @@ class Task:
         return Outcome("end", "", self.time)
 
     def pass_time(self, seconds: float) -> None:
-        """Advance robot time, and run the traps that fall due in it."""
+        """Advance robot time, and run the traps and events that fall due in it."""
         end = self.time + max(seconds, 0.0)
         self.progress += 1
-        while (due := self.interrupts.next_time()) is not None and due <= end:
+        while (due := self._next_time()) is not None and due <= end:
             self._advance(due)
-            self.interrupts.serve()
+            self._serve()
         self._advance(end)
+        self._serve()
+
+    def _next_time(self) -> float | None:
+        event = self.robot.next_event()
+        times = (self.interrupts.next_time(), self.time + event if event is not None else None)
+        return min((one for one in times if one is not None), default=None)
+
+    def _serve(self) -> None:
+        self.robot.serve()
         self.interrupts.serve()
+
+    def wait_for_robot(self, left: Callable[[], float]) -> None:
+        """Let time pass until a time that a robot says is over; while the robot is stopped, until a trap starts it.
+
+        Raises
+        ------
+        FatalError
+            Where the robot is stopped, and nothing is left that could start it.
+        """
+        while (seconds := left()) > 0.0:
+            if math.isinf(seconds):
+                if self.interrupts.next_time() is None and not self.settings.get("is_live"):
+                    raise FatalError("the movement is stopped, and nothing is left that could start it; use StartMove")
+                seconds = STOPPED_POLL
+            self.pass_time(seconds)
+
+    def catch_up(self) -> None:
+        """Let time pass until instructions run that come behind the latest movement; a trap does not wait."""
+        if not self.interrupts.is_serving:
+            self.wait_for_robot(self.robot.lead)
+
+    def signal(self, name: object) -> float:
+        """Return the value that a signal has when the program reads it."""
+        self.catch_up()
+        return self.signals.value(name)
 
     def _advance(self, time: float) -> None:
         if self._limit is not None and time > self._limit:
@@ -183,6 +224,7 @@ class Task:
             self.is_waiting = True
             self._pace(time - self.time)
             self.is_waiting = False
+        self.robot.advance(time - self.time)
         self.time = time
 
     def ask(self, text: str, choices: Sequence[str] = ()) -> str:
@@ -339,7 +381,7 @@ class Task:
             "_ProgramEnd": ProgramEnd,
             **arithmetic.OPERATIONS,
             **self._translation.constants,
-            **{f"b_{name}": function for name, function in routines().items()},
+            **{f"b_{name}": _timed(function) if is_timed(name) else function for name, function in routines().items()},
         }
         namespace["_G"] = namespace
         for key in set(re.findall(r"\bp_(\w+)", self._translation.text())):
@@ -417,6 +459,17 @@ class Task:
     def _calls(self, error: BaseException) -> list[str]:
         """Return the places of the routines that an error has come through, the innermost first."""
         return [self.place_of(line) for line in reversed(_lines(error.__traceback__))]
+
+
+def _timed(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a routine that runs when the robot has come as far as the program has."""
+
+    @functools.wraps(function)
+    def run(task: Task, *values: Any, **named: Any) -> Any:
+        task.catch_up()
+        return function(task, *values, **named)
+
+    return run
 
 
 def _lines(traceback: TracebackType | None) -> list[int]:

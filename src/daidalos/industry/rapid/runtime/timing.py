@@ -46,7 +46,8 @@ def wait_time(task: Task, time_: float, inpos_: Any = None) -> None:
     """Wait so many seconds."""
     if time_ < 0:
         raise RapidError("ERR_ARGVALERR", f"WaitTime takes 0 or more seconds, not {time_:g}")
-    task.pass_time(task.robot.wait_in_position() if inpos_ or time_ == 0 else 0.0)
+    if inpos_ or time_ == 0:
+        task.wait_for_robot(task.robot.remaining)
     task.pass_time(time_)
 
 
@@ -71,7 +72,7 @@ def wait_until(
 @routine("WaitRob")
 def wait_robot(task: Task, inpos_: Any = None, zerospeed_: Any = None) -> None:
     """Wait until the robot stands."""
-    task.pass_time(task.robot.wait_in_position())
+    task.wait_for_robot(task.robot.remaining)
 
 
 @routine("WaitTestAndSet")
