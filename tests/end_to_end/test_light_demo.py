@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import socket
 from typing import Any
 
 import pytest
@@ -16,7 +17,6 @@ from tf2_py import TransformException
 from tf2_ros import Buffer, TransformListener
 from visualization_msgs.msg import MarkerArray
 
-from artnet_ports import artnet_port
 from daidalos.common.pose3 import Pose
 from end_to_end.processes import DAIDALOS, Command
 
@@ -71,13 +71,11 @@ class Watcher:
 
 
 def test_the_spot_lies_on_the_part(domain: int) -> None:
-    with artnet_port():
-        follow(domain)
-
-
-def follow(domain: int) -> None:
-    """Send the light to three places and look where the spot is."""
-    with Command(*DAIDALOS, "light", "demo", "--no-browser", "--port", str(_PORT), domain=domain) as demo:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        artnet = str(probe.getsockname()[1])
+    words = (*DAIDALOS, "light", "demo", "--no-browser", "--port", str(_PORT), "--artnet-port", artnet)
+    with Command(*words, domain=domain) as demo:
         demo.wait_for_line("studio: http://")
         rclpy.init(domain_id=domain)
         watcher = Watcher(rclpy.create_node("watcher"))

@@ -25,7 +25,9 @@ HARDWARE: Kind[Hardware] = Kind(
     "daidalos.hardware",
     "daidalos.control.contracts:Hardware",
     "stands between controllers and motors; named by the <plugin> of a <ros2_control> element",
-    partial(classes_in, "daidalos.control.hardware", "daidalos.nodes.controller_manager"),
+    partial(
+        classes_in, "daidalos.control.hardware", "daidalos.nodes.controller_manager", "daidalos.nodes.daidalos_lighting"
+    ),
 )
 KINDS = (CONTROLLERS, HARDWARE)
 MOCK = "mock_components/GenericSystem"

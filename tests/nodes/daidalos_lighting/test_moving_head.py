@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import socket
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA, String
 from tf2_ros import StaticTransformBroadcaster
+from trajectory_msgs.msg import JointTrajectory
 
 from daidalos.common.errors import UserError
 from daidalos.industry.lighting import artnet
@@ -129,6 +131,39 @@ def test_what_cannot_be_reached_changes_nothing(cell: Cell) -> None:
     count = len(cell.joints)
     cell.until(lambda: len(cell.joints) > count + 20)
     assert cell.points_at(0.5, -0.3, 0.8)()
+
+
+def test_texts_of_mqtt(cell: Cell) -> None:
+    errors = list[Any]()
+    cell.node.create_subscription(String, "error", errors.append, 10)
+    cell.publish(String, "point_text", String(data="[0.5, -0.3, 0.8]"))
+    cell.until(cell.points_at(0.5, -0.3, 0.8))
+    for text, problem in (("[1, 2]", "is no point"), ("[NaN, 0, 0]", "is no point"), ("[0, 0, 9]", "out of range")):
+        del errors[:]
+        cell.publish(String, "point_text", String(data=text))
+        cell.until(lambda: bool(errors))
+        assert problem in errors[0].data
+    assert cell.points_at(0.5, -0.3, 0.8)()
+
+
+@pytest.mark.usefixtures("graph")
+def test_a_controller_turns_the_head_at_its_speed(node: Node) -> None:
+    found = list[Any]()
+    node.create_subscription(JointTrajectory, "head_controller/joint_trajectory", found.append, 10)
+    head = MovingHead(parameter_overrides=[Parameter("controller", value="head_controller")])
+    executor = SingleThreadedExecutor()
+    executor.add_node(head)
+    executor.add_node(node)
+    node.create_publisher(PointStamped, "point", 1).publish(point("world", 0.5, -0.3, 0.8))
+    end = time.monotonic() + 20.0
+    while not found:
+        assert time.monotonic() < end
+        executor.spin_once(timeout_sec=0.01)
+    way = found[0].points[0]
+    assert [math.degrees(one) for one in way.positions] == pytest.approx([30.964, -16.254], abs=1e-3)
+    seconds = way.time_from_start.sec + 1e-9 * way.time_from_start.nanosec
+    assert seconds == pytest.approx(math.radians(30.964) / head._head.limits.pan_speed, rel=1e-3)
+    head.destroy_node()
 
 
 @pytest.mark.usefixtures("graph")

@@ -32,6 +32,9 @@ class LightVerb:
         demo = commands.add_parser("demo", help="a simulated head over a table, in the simulator and the studio")
         demo.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
         demo.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
+        demo.add_argument(
+            "--artnet-port", type=int, metavar="N", help="of the simulated head (default: 6454, or a free one)"
+        )
         demo.set_defaults(_command=_demo)
         run = commands.add_parser("run", help="take points and channels over MQTT until Ctrl-C, then go dark")
         add_configuration(run)
@@ -174,8 +177,28 @@ def _demo(args: argparse.Namespace) -> int:
 
     leave_overlays()
     source = AnyLaunchDescriptionSource(str(find_launch_file("daidalos_lighting", "demo.launch.py")))
-    settings = {"port": str(args.port), "open_browser": str(not args.no_browser).lower()}
+    port = args.artnet_port or _artnet_port()
+    settings = {"port": str(args.port), "open_browser": str(not args.no_browser).lower(), "artnet_port": str(port)}
     return run_launch(IncludeLaunchDescription(source, launch_arguments=list(settings.items())))
+
+
+def _artnet_port() -> int:
+    """Return the port of Art-Net, or a free one where another program receives there."""
+    import socket
+
+    from daidalos.industry.lighting.artnet import PORT
+
+    for port in (PORT, 0):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            found = int(probe.getsockname()[1])
+            if found != PORT:
+                report(f"another program receives Art-Net at port {PORT}; the simulated head has port {found}")
+            return found
+    raise UserError("there is no free UDP port")
 
 
 def _calibrate(args: argparse.Namespace) -> int:

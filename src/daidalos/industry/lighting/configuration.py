@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -138,6 +138,19 @@ class Configuration:
         for one in self.outputs:
             self._refuse_universes(one)
         return [make_output(one) for one in self.outputs]
+
+    def with_artnet_port(self, port: int) -> Configuration:
+        """Return the configuration with another port of its Art-Net outputs; with the same one where it is 0.
+
+        Raises
+        ------
+        ParameterError
+            When there is no such port.
+        """
+        if not port:
+            return self
+        outputs = tuple(replace(one, port=port) if isinstance(one, ArtNetParameters) else one for one in self.outputs)
+        return replace(self, outputs=outputs)
 
     def _refuse_universes(self, output: OutputParameters) -> None:
         least, most = (1, sacn.MAX_UNIVERSE) if isinstance(output, SacnParameters) else (0, artnet.MAX_UNIVERSE)

@@ -7,18 +7,21 @@ from pathlib import Path
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA, String
 from tf2_py import TransformException
 from tf2_ros import Buffer, TransformListener
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose3 import Pose, Vector
+from daidalos.industry.lighting import messages
 from daidalos.industry.lighting.configuration import DEFAULT, read_configuration
 from daidalos.industry.lighting.fixture import FixtureError
-from daidalos.industry.lighting.kinematics import PointingError
+from daidalos.industry.lighting.kinematics import Angles, PointingError
 from daidalos.industry.lighting.show import FRAME_S, Show
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
@@ -32,6 +35,10 @@ class MovingHeadParameters(Parameters):
         "", "File of heads and outputs, as `daidalos light` reads it; the built-in one where empty."
     )
     head: str = parameter("", "Name of the head; the first of the file where empty.")
+    artnet_port: int = parameter(0, "Port of the Art-Net outputs; that of the file where 0.", minimum=0, maximum=65535)
+    controller: str = parameter(
+        "", "Joint trajectory controller that turns the head, in place of the outputs; none where empty."
+    )
     world_frame: str = parameter("world", "Frame in which the file says where heads are.", not_empty=True)
     pan_joint: str = parameter("pan_joint", "Name of the pan axis in the joint states.", not_empty=True)
     tilt_joint: str = parameter("tilt_joint", "Name of the tilt axis in the joint states.", not_empty=True)
@@ -47,16 +54,25 @@ class MovingHead(Node):
         super().__init__("moving_head", **kwargs)
         settings = declare(self, MovingHeadParameters)
         configuration = read_configuration(Path(settings.config) if settings.config else DEFAULT)
+        configuration = configuration.with_artnet_port(settings.artnet_port)
         self._settings = settings
         self._show = Show(configuration.make_heads())
         self._head = self._show.head(settings.head or configuration.heads[0].name)
-        self._outputs = configuration.make_outputs()
+        self._outputs = [] if settings.controller else configuration.make_outputs()
+        self._trajectories = (
+            self.create_publisher(JointTrajectory, f"{settings.controller}/joint_trajectory", 1)
+            if settings.controller
+            else None
+        )
         self._frame = ""
+        self._sent: Angles | None = None
         self._buffer = Buffer(node=self)
         self._listener = TransformListener(self._buffer, self)
         self._joints = self.create_publisher(JointState, "joint_states", 10)
+        self._errors = self.create_publisher(String, "error", 1)
         self.create_subscription(PointStamped, "point", self._take_point, 1)
         self.create_subscription(String, "aim_frame", self._take_frame, 1)
+        self.create_subscription(String, "point_text", self._take_text, 1)
         self.create_subscription(ColorRGBA, "color", self._take_color, 1)
         self.create_timer(FRAME_S, self._step)
 
@@ -80,6 +96,16 @@ class MovingHead(Node):
             place = found
         self._aim(place)
         self._step()
+
+    def _take_text(self, message: String) -> None:
+        """Aim at a point ``[x, y, z]`` of the world, as it comes over MQTT."""
+        try:
+            place = messages.parse(messages.POINT, message.data.encode())
+        except messages.MessageError as problem:
+            self._refuse(str(problem))
+            return
+        self._frame = ""
+        self._aim(place)
 
     def _take_frame(self, message: String) -> None:
         """Follow the origin of a frame from now on; an empty name ends that."""
@@ -111,17 +137,35 @@ class MovingHead(Node):
             self._joints.publish(message)
 
     def _aim(self, place: Vector) -> None:
+        before = self._head.angles
         try:
-            self._head.point(place)
+            wanted = self._head.point(place)
         except PointingError as problem:
-            self.get_logger().warning(str(problem), throttle_duration_sec=1.0)
+            self._refuse(str(problem))
+            return
         self._show.mark(self._head)
+        if self._trajectories is not None and wanted != self._sent:
+            self._trajectories.publish(self._trajectory(before, wanted))
+            self._sent = wanted
+
+    def _trajectory(self, before: Angles, wanted: Angles) -> JointTrajectory:
+        """Return the way to some angles, at the speed of the fixture."""
+        limits = self._head.limits
+        way = max(abs(wanted.pan - before.pan) / limits.pan_speed, abs(wanted.tilt - before.tilt) / limits.tilt_speed)
+        point = JointTrajectoryPoint(positions=[wanted.pan, wanted.tilt])
+        point.time_from_start = Duration(seconds=max(way, FRAME_S)).to_msg()
+        return JointTrajectory(joint_names=[self._settings.pan_joint, self._settings.tilt_joint], points=[point])
+
+    def _refuse(self, problem: str) -> None:
+        """Log and publish why something was refused; the head holds still."""
+        self.get_logger().warning(problem, throttle_duration_sec=1.0)
+        self._errors.publish(String(data=problem))
 
     def _look_up(self, frame: str, place: Vector) -> Vector | None:
         try:
             transform = self._buffer.lookup_transform(self._settings.world_frame, frame, Time())
         except TransformException as problem:
-            self.get_logger().warning(f"cannot aim at frame '{frame}': {problem}", throttle_duration_sec=1.0)
+            self._refuse(f"cannot aim at frame '{frame}': {problem}")
             return None
         shift, turn = transform.transform.translation, transform.transform.rotation
         return Pose((shift.x, shift.y, shift.z), (turn.x, turn.y, turn.z, turn.w)).transform(place)

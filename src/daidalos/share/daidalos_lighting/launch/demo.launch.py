@@ -19,6 +19,7 @@ def share(*parts):
 
 def generate_launch_description():
     urdf = share("urdf", "moving_head.urdf")
+    port = ParameterValue(LaunchConfiguration("artnet_port"), value_type=int)
     config = {"config": share("config", "head.yaml")}
     studio = {
         "port": ParameterValue(LaunchConfiguration("port"), value_type=int),
@@ -29,6 +30,7 @@ def generate_launch_description():
             DeclareLaunchArgument("studio", default_value="true", description="whether to serve the studio"),
             DeclareLaunchArgument("open_browser", default_value="true", description="whether to open it"),
             DeclareLaunchArgument("port", default_value="8765", description="of the studio"),
+            DeclareLaunchArgument("artnet_port", default_value="6454", description="UDP port of Art-Net"),
             Node(
                 package="gazebo_ros",
                 executable="gzserver",
@@ -41,14 +43,14 @@ def generate_launch_description():
             Node(
                 package="daidalos_lighting",
                 executable="moving_head",
-                parameters=[config],
+                parameters=[config, {"artnet_port": port}],
                 remappings=[("joint_states", "aimed_joint_states"), ("point", "clicked_point")],
                 output="screen",
             ),
             Node(
                 package="daidalos_lighting",
                 executable="simulated_head",
-                parameters=[config],
+                parameters=[config, {"port": port}],
                 output="screen",
                 on_exit=[Shutdown()],
             ),

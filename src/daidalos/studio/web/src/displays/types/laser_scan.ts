@@ -68,7 +68,7 @@ export default {
   defaults: {
     topic: "/scan",
     colorBy: "flat",
-    color: "#ff5d52",
+    color: "#e36bff",
     style: "points",
     pixels: 4,
     metres: 0.03,
