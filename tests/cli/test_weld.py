@@ -69,3 +69,10 @@ def test_nothing_is_written_over(line, tmp_path, capsys):
     assert main(["weld", "plan", str(line), *WRENCH, "-o", str(out)]) == 2
     assert "report.html: is there already" in capsys.readouterr().err
     assert [file.name for file in out.iterdir()] == ["report.html"]
+
+
+def test_experiment_refuses_what_is_wrong(tmp_path, capsys):
+    assert main(["weld", "experiment", "line", "--truth", str(tmp_path / "none.yaml")]) == 2
+    assert "none.yaml: there is no such file" in capsys.readouterr().err
+    assert main(["weld", "experiment", "line", "--seed", "-1"]) == 2
+    assert "--seed is -1" in capsys.readouterr().err

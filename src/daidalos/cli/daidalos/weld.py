@@ -46,6 +46,18 @@ class WeldVerb:
         plan.add_argument("-o", "--output", type=Path, required=True, metavar="FOLDER", help="where the files go")
         plan.add_argument("--json", action="store_true", help="print the figures as JSON")
         plan.set_defaults(_command=_plan)
+        experiment = commands.add_parser("experiment", help="weld a test path in a simulated cell, and measure it")
+        experiment.add_argument("test", choices=("line", "curve"), help="straight line, or curve of nine zones")
+        add_robot(experiment)
+        experiment.add_argument(
+            "--truth", type=Path, metavar="FILE", help="elasticity of the simulated robot (default: drawn by --seed)"
+        )
+        experiment.add_argument(
+            "--seed", type=int, default=0, help="of the robot's elasticity and the noise (default: 0)"
+        )
+        experiment.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="where the report goes")
+        experiment.add_argument("--json", action="store_true", help="print the figures as JSON")
+        experiment.set_defaults(_command=_experiment, friction=True)
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run the command."""
@@ -197,3 +209,40 @@ def _show(planned: Plan) -> None:
             best = figures[name][0]
             value = ", ".join(f"{one:g}" for one in best[f"value_{unit}"])
             print(f"stiffest {title}: {value} {unit}, deflection {best['deflection_mm']:.3f} mm rms")
+
+
+def _experiment(args: argparse.Namespace) -> int:
+    from daidalos.industry.elasticity.elasticity_file import read_elasticity
+    from daidalos.industry.welding.comparison import curve_rows, line_rows
+    from daidalos.industry.welding.experiments import figures, run_experiment
+    from daidalos.industry.welding.nine_zones import nine_zone_curve, straight_line
+    from daidalos.industry.welding.report import experiment_report
+    from daidalos.industry.welding.results import write_new
+    from daidalos.industry.welding.simulated_cell import drawn
+
+    if args.seed < 0:
+        raise UserError(f"--seed is {args.seed}, but must not be negative")
+    cell = cell_of(args)
+    if args.truth is None:
+        truth = drawn(cell.elasticity, args.seed)
+    elif args.truth.is_file():
+        truth = read_elasticity(args.truth, args.robot).with_tool(args.tool_mass)
+    else:
+        raise UserError(f"{args.truth}: there is no such file")
+    is_line = args.test == "line"
+    done = run_experiment(cell, truth, straight_line() if is_line else nine_zone_curve(), args.seed)
+    rows = line_rows(done) if is_line else curve_rows(done)
+    if args.output is not None:
+        page = experiment_report(done, rows, f"Experiment: {args.test}")
+        write_new(args.output, {f"{args.test}.html": page})
+    if args.json:
+        table = [{"figure": row.title, "workshop": row.printed, "here": row.ours, "remark": row.remark} for row in rows]
+        print(json.dumps({"welds": figures(done), "table": table}, indent=1))
+        return 0
+    print(f"{'':48}{'workshop':>22}{'here':>20}")
+    for row in rows:
+        print(f"{row.title:48}{row.printed:>22}{row.ours:>20}")
+    remarks = dict.fromkeys(row.remark for row in rows if row.remark)
+    for remark in remarks:
+        print(f"- {remark}")
+    return 0

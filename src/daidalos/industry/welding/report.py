@@ -1,10 +1,14 @@
-"""Report of a planned weld as one HTML page."""
+"""Reports of planned welds and of experiments, each one HTML page."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from daidalos.industry.welding.charts import line_chart, page, table
+from daidalos.industry.welding.comparison import Row
+from daidalos.industry.welding.experiments import Experiment
 from daidalos.industry.welding.planning import DIRECTIONS, Plan
 
 _TITLES = {"ahead": "ahead (advance)", "across": "across (lateral)", "along_tool": "along the tool (axial)"}
@@ -46,7 +50,22 @@ def report(plan: Plan, title: str) -> str:
     return page(title, parts)
 
 
-def _summary(figures: dict) -> str:  # type: ignore[type-arg]
+def experiment_report(experiment: Experiment, rows: list[Row], title: str) -> str:
+    """Return the page of an experiment: the table, and what the tracker measured."""
+    cells = [[row.title, row.printed, row.ours, row.remark] for row in rows]
+    parts = [table(["figure", "workshop", "here", "remark"], cells)]
+    names = {"uncorrected": "not corrected", "without_backlash": "without backlash", "corrected": "corrected"}
+    for index, direction in enumerate(DIRECTIONS):
+        lines = {names[name]: 1e3 * weld.deviations[:, index] for name, weld in experiment.welds.items()}
+        along = 1e3 * experiment.welds["corrected"].distances
+        parts.append(line_chart(f"Measured {_TITLES[direction]}", along, lines, "path [mm]", "deviation [mm]"))
+    torques = experiment.plans["corrected"].correction
+    lines = {f"axis {axis + 1}": column for axis, column in enumerate(torques.after.torques.T)}
+    parts.append(line_chart("Torques of the model", 1e3 * torques.distances, lines, "path [mm]", "torque [Nm]"))
+    return page(title, parts)
+
+
+def _summary(figures: dict[str, Any]) -> str:
     rows = [
         [_TITLES[direction], *(figures[state][f"{direction}_rms_mm"] for state in ("before", "after"))]
         for direction in DIRECTIONS
