@@ -23,6 +23,8 @@ ROUND_TRIPS = 2000
 WARM = 300
 STREAM_S = 2.0
 SMALL = b"x" * 69
+ATTACHMENT = bytes(33)
+"""As long as what rmw_zenoh attaches to every message: sequence number, time and gid."""
 SETTLE_S = 0.5
 UNIX_LINK, TCP_LINK = "unixsock-stream", "tcp"
 
@@ -30,10 +32,11 @@ UNIX_LINK, TCP_LINK = "unixsock-stream", "tcp"
 def zenoh_latency(role: str, link: str = UNIX_LINK) -> tuple[float, float]:
     """Return the median and the 99th percentile, in us, of what goes to another process and back over zenoh.
 
-    `role` is ``zenoh_ping`` for two topics or ``zenoh_call`` for a query and its reply; for `link`, see
-    `link_endpoint`.
+    `role` is ``zenoh_ping`` for two topics, ``rmw_ping`` for the same with what ROS 2 asks of every message, or
+    ``zenoh_call`` for a query and its reply; for `link`, see `link_endpoint`.
     """
-    with link_endpoint(link) as endpoint, running("floors", "zenoh_echo", endpoint):
+    echo = "rmw_echo" if role == "rmw_ping" else "zenoh_echo"
+    with link_endpoint(link) as endpoint, running("floors", echo, endpoint):
         return middle_and_tail_us(result(start("floors", role, endpoint))["times"])
 
 
@@ -117,6 +120,31 @@ def zenoh_ping(endpoint: str) -> None:
         answered, ping = _Gate(), _publisher(session, "ping")
         kept = session.declare_subscriber("pong", _direct(answered.open))
         _repeat(lambda: ping.put(SMALL), answered)
+        assert kept
+
+
+def rmw_echo(endpoint: str) -> None:
+    """Answer with rmw_zenoh's attachment, from a thread that is not zenoh's, as an executor does."""
+    with _session(endpoint, "listen") as session:
+        pong, come, samples = _publisher(session, "pong"), _Gate(), []
+
+        def receive(sample: Any) -> None:
+            samples.append(sample)
+            come.open(sample)
+
+        kept = session.declare_subscriber("ping", _direct(receive))
+        threading.Thread(target=lambda: (sys.stdin.read(), os._exit(0)), daemon=True).start()
+        say_ready()
+        while kept:
+            come.wait()
+            pong.put(samples.pop().payload.to_bytes(), attachment=ATTACHMENT)
+
+
+def rmw_ping(endpoint: str) -> None:
+    with _session(endpoint, "connect") as session:
+        answered, ping = _Gate(), _publisher(session, "ping")
+        kept = session.declare_subscriber("pong", _direct(answered.open))
+        _repeat(lambda: ping.put(SMALL, attachment=ATTACHMENT), answered)
         assert kept
 
 
@@ -232,7 +260,7 @@ def dds_ping() -> None:
 
 ROLES: dict[str, Callable[..., None]] = {
     role.__name__: role
-    for role in (zenoh_echo, zenoh_ping, zenoh_call, zenoh_count, zenoh_flood, dds_echo, dds_ping)
+    for role in (zenoh_echo, zenoh_ping, rmw_echo, rmw_ping, zenoh_call, zenoh_count, zenoh_flood, dds_echo, dds_ping)
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -106,6 +106,8 @@ def measure_latencies() -> dict[str, float]:
             name: lambda pair=(answers, asks): _latency(*pair),
             f"floor_{name}": lambda f=floor: floors.zenoh_latency(f),
         }
+        if floor == "zenoh_ping":
+            ways["floor_round_trip_attached"] = lambda: floors.zenoh_latency("rmw_ping")
         figures |= _latencies_in_turns(ways)
     return figures
 
