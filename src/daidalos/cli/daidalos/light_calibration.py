@@ -19,35 +19,38 @@ if TYPE_CHECKING:
 
 _HELP = "arrow keys turn, + and - change the step, Enter confirms, u takes the last one back, q ends (resumable)"
 _HELP_AT_THE_END = "Enter writes the result, p proposes one more point, u takes the last one back, q ends (resumable)"
-_COLUMNS = 9
-_ROWS = 7
 
 
 def calibrate(args: argparse.Namespace, chosen: Configuration, report: Callable[[str], None]) -> int:
     """Guide through a calibration; return 0 when the result is written, 1 when it was left."""
+    from daidalos.industry.lighting.calibration import CalibrationError
     from daidalos.industry.lighting.calibration_file import read_points, read_session
     from daidalos.industry.lighting.engine import Engine
-    from daidalos.industry.lighting.guided_calibration import GuidedCalibration
+    from daidalos.industry.lighting.guided_calibration import GuidedCalibration, corners, session_file, table_targets
     from daidalos.industry.lighting.show import Show
     from daidalos.nodes.keyboard import Keyboard
 
     show = Show(chosen.make_heads())
     name = args.head or chosen.heads[0].name
     head = show.head(name)
-    points = read_points(args.points) if args.points else _corners(args.table)
-    session = _session_file(args.output)
+    try:
+        points = read_points(args.points) if args.points else corners(args.table)
+    except CalibrationError as error:
+        raise UserError(str(error)) from None
+    session = session_file(args.output)
     confirmed = read_session(session, name) if session.exists() else []
     guided = GuidedCalibration(points, head.geometry, head.limits, confirmed)
     if confirmed:
         print(f"resumed from {session}: {len(confirmed)} directions are confirmed")
     with Keyboard() as keyboard, Engine(show, chosen.make_outputs(), report) as engine:
-        return _guide(guided, keyboard, engine, name, args.output, _targets(points))
+        return _guide(guided, keyboard, engine, name, args.output, table_targets(points))
 
 
 def _guide(
     guided: GuidedCalibration, keyboard: Keyboard, engine: Engine, name: str, output: Path, targets: Sequence[Vector]
 ) -> int:
     from daidalos.industry.lighting.calibration_file import write_session
+    from daidalos.industry.lighting.guided_calibration import session_file
 
     print(_HELP)
     is_told = None
@@ -60,7 +63,7 @@ def _guide(
         _show_angles(guided)
         key = keyboard.read()
         if key in (None, "q"):
-            print(f"\nleft; the same command resumes it from {_session_file(output)}")
+            print(f"\nleft; the same command resumes it from {session_file(output)}")
             return 1
         if key in ("\r", "\n") and guided.task is None:
             if guided.result is not None:
@@ -69,7 +72,7 @@ def _guide(
         elif key == "p" and guided.task is None and guided.result is not None:
             guided.add_proposal(targets)
         elif guided.press(key or ""):
-            write_session(_session_file(output), name, guided.observations)
+            write_session(session_file(output), name, guided.observations)
 
 
 def _tell(guided: GuidedCalibration, targets: Sequence[Vector]) -> None:
@@ -96,6 +99,7 @@ def _show_angles(guided: GuidedCalibration) -> None:
 def _print_result(guided: GuidedCalibration, targets: Sequence[Vector]) -> None:
     """Print pose, angles, and the expected error over the table."""
     from daidalos.industry.lighting.calibration import expected_errors
+    from daidalos.industry.lighting.guided_calibration import COLUMNS
 
     found = guided.result
     assert found is not None
@@ -109,41 +113,17 @@ def _print_result(guided: GuidedCalibration, targets: Sequence[Vector]) -> None:
     print(f"residual {math.degrees(found.residual):.4f} deg, condition {found.condition:.0f}")
     errors = 1e3 * expected_errors(found, targets)
     print("expected pointing error over the table [mm], the greatest y at the top:")
-    columns = _COLUMNS if len(targets) == _COLUMNS * _ROWS else len(targets)
-    for start in range(len(errors) - columns, -1, -columns):
-        print("".join(f"{value:7.1f}" for value in errors[start : start + columns]))
+    for start in range(len(errors) - COLUMNS, -1, -COLUMNS):
+        print("".join(f"{value:7.1f}" for value in errors[start : start + COLUMNS]))
 
 
 def _write(guided: GuidedCalibration, name: str, output: Path, targets: Sequence[Vector]) -> None:
     from daidalos.industry.lighting.calibration import expected_errors
     from daidalos.industry.lighting.calibration_file import write_calibration
+    from daidalos.industry.lighting.guided_calibration import session_file
 
     assert guided.result is not None
     worst = float(expected_errors(guided.result, targets).max())
     write_calibration(output, name, guided.result, guided.observations, worst)
-    _session_file(output).unlink(missing_ok=True)
+    session_file(output).unlink(missing_ok=True)
     print(f"\nwritten to {output}; put `calibration: {output.name}` into the head's configuration")
-
-
-def _session_file(output: Path) -> Path:
-    return output.with_name(f"{output.name}.session")
-
-
-def _corners(table: Sequence[float]) -> list[Vector]:
-    x0, y0, x1, y1, z = table
-    if not all(math.isfinite(one) for one in table) or x0 == x1 or y0 == y1:
-        raise UserError("--table needs two different corners and a height")
-    return [(x0, y0, z), (x0, y1, z), (x1, y0, z), (x1, y1, z)]
-
-
-def _targets(points: Sequence[Vector]) -> list[Vector]:
-    """Return points of the rectangle that encloses the known ones, at their mean height."""
-    import numpy as np
-
-    xs, ys, zs = zip(*points, strict=True)
-    height = sum(zs) / len(zs)
-    return [
-        (float(x), float(y), height)
-        for y in np.linspace(min(ys), max(ys), _ROWS)
-        for x in np.linspace(min(xs), max(xs), _COLUMNS)
-    ]

@@ -5,12 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
 
 from daidalos.common.pose3 import Vector
 from daidalos.industry.lighting.calibration import Calibration, CalibrationError, Observation, calibrate, propose
 from daidalos.industry.lighting.kinematics import Angles, Geometry, Limits
 
 STEPS = tuple(math.radians(one) for one in (5.0, 1.0, 0.2, 0.05, 0.01))
+COLUMNS = 9
+"""Points along x at which the expected error is computed."""
+_ROWS = 7
 _MIN_OBSERVATIONS = 4
 _KEYS = {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}
 
@@ -82,7 +88,7 @@ class GuidedCalibration:
         """
         if key in _KEYS and self.task is not None:
             pan, tilt = _KEYS[key]
-            self._turn(self.angles.pan + pan * self.step, self.angles.tilt + tilt * self.step)
+            self.turn_by(pan * self.step, tilt * self.step)
         elif key in ("+", "-"):
             self._step = min(max(self._step + (1 if key == "-" else -1), 0), len(STEPS) - 1)
         elif key in ("\r", "\n") and self.task is not None:
@@ -95,6 +101,14 @@ class GuidedCalibration:
         else:
             return False
         return True
+
+    def turn_by(self, pan: float, tilt: float) -> None:
+        """Turn by angles [rad], within the ranges of the axes."""
+        limits = self._limits
+        self.angles = Angles(
+            min(max(self.angles.pan + pan, limits.pan[0]), limits.pan[1]),
+            min(max(self.angles.tilt + tilt, limits.tilt[0]), limits.tilt[1]),
+        )
 
     def add_proposal(self, targets: Sequence[Vector]) -> Task:
         """Add the direction that helps most over some targets, of both flips at each of them.
@@ -144,8 +158,32 @@ class GuidedCalibration:
         first, second = (one if self._limits.allow(one) else None for one in self.geometry.solutions(point))
         return first, second
 
-    def _turn(self, pan: float, tilt: float) -> None:
-        limits = self._limits
-        self.angles = Angles(
-            min(max(pan, limits.pan[0]), limits.pan[1]), min(max(tilt, limits.tilt[0]), limits.tilt[1])
-        )
+
+def corners(table: Sequence[float]) -> list[Vector]:
+    """Return the corners of a table from two of them and its height [m]: x0, y0, x1, y1, z.
+
+    Raises
+    ------
+    CalibrationError
+        When they enclose nothing.
+    """
+    x0, y0, x1, y1, z = table
+    if not all(math.isfinite(one) for one in table) or x0 == x1 or y0 == y1:
+        raise CalibrationError("a table needs two different corners and a height")
+    return [(x0, y0, z), (x0, y1, z), (x1, y0, z), (x1, y1, z)]
+
+
+def table_targets(points: Sequence[Vector]) -> list[Vector]:
+    """Return points of the rectangle that encloses the known ones, at their mean height, row by row [m]."""
+    xs, ys, zs = zip(*points, strict=True)
+    height = sum(zs) / len(zs)
+    return [
+        (float(x), float(y), height)
+        for y in np.linspace(min(ys), max(ys), _ROWS)
+        for x in np.linspace(min(xs), max(xs), COLUMNS)
+    ]
+
+
+def session_file(output: Path) -> Path:
+    """Return the file that keeps what is confirmed until the result is written."""
+    return output.with_name(f"{output.name}.session")
