@@ -48,7 +48,7 @@ def square(speed: float, zone: Zone | None = Z10, **more: float) -> Planner:
 @pytest.mark.parametrize(("turn", "speed_share"), [(1.5, 1.0), (0.1, 1.0), (1.0, 0.3)])
 def test_joint_movement_takes_the_time_of_an_s_curve(turn: float, speed_share: float) -> None:
     start = np.radians([0.0, 0.0, 0.0, 0.0, 30.0, 0.0])
-    end = [*start, turn, 0.0, 0.0, 0.0, 0.0, 0.0]
+    end = start + np.array([turn, 0.0, 0.0, 0.0, 0.0, 0.0])
     planner = Planner(ARM, start)
     curve = JointCurve.between(ARM, TOOL, start, end)
     v, a = speed_share * ARM.speeds[0], ARM.accelerations[0]

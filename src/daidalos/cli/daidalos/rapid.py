@@ -13,11 +13,13 @@ from daidalos.common.errors import UserError
 
 
 class RapidVerb:
-    """Check, format and run programs of ABB robots."""
+    """Check, format, run, trace and write programs of ABB robots."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
         """Declare the arguments of `daidalos rapid`."""
-        commands = parser.add_subparsers(title="commands", required=True, metavar="check | format | run | server")
+        commands = parser.add_subparsers(
+            title="commands", required=True, metavar="check | format | run | trace | write | draw | server"
+        )
         check = commands.add_parser("check", help="find errors; exit status 0 without errors, else 2")
         check.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
         check.add_argument("--json", action="store_true", help="print a list of files with their errors")
@@ -37,35 +39,44 @@ class RapidVerb:
         format_.set_defaults(_command=_format)
 
         run = commands.add_parser("run", help="run a program; exit status 0 at its end, 2 after an error")
-        run.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
-        run.add_argument("--task", metavar="NAME", help="which program of a folder, such as T_ROB1")
-        run.add_argument("--proc", default="main", metavar="NAME", help="procedure to run (default: main)")
+        _add_program(run)
         run.add_argument("--fast", action="store_true", help="do not let real time pass with the robot's")
         run.add_argument("--save", action="store_true", help="write the values of persistents back into the modules")
-        run.add_argument(
-            "--io",
-            type=Path,
-            action="append",
-            default=[],
-            metavar="EIO.cfg",
-            help="configuration that declares signals",
-        )
-        run.add_argument(
-            "--signal", action="append", default=[], metavar="NAME=VALUE", help="value that a signal begins with"
-        )
-        run.add_argument(
-            "--home", type=Path, metavar="FOLDER", help="folder that HOME: stands for (default: that of the program)"
-        )
         run.add_argument("--robot", metavar="ARM", help="arm that moves, such as irb120 (default: one without joints)")
-        run.add_argument(
-            "--sensor",
-            action="append",
-            default=[],
-            metavar="NAME=CONDITION",
-            help="input that is 1 where the tool's position in the base is so, such as diTouch=z<120 [mm]",
-        )
-        run.add_argument("--max-time", type=float, metavar="S", help="end after so many seconds of robot time")
         run.set_defaults(_command=_run)
+
+        trace = commands.add_parser("trace", help="run a program on an arm, and write a report of its motion")
+        _add_program(trace)
+        trace.add_argument("--robot", default="irb120", metavar="ARM", help="arm that moves (default: irb120)")
+        trace.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.html", help="the report")
+        trace.add_argument("--force", action="store_true", help="replace an existing report")
+        trace.set_defaults(_command=_trace)
+
+        write = commands.add_parser("write", help="write the program that draws a text with a pen")
+        _add_text(write)
+        write.add_argument("text", metavar="TEXT", help="one line")
+        write.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.mod", help="the program")
+        write.add_argument("--force", action="store_true", help="replace an existing file")
+        write.add_argument(
+            "--at",
+            type=float,
+            nargs=3,
+            metavar=("X", "Y", "Z"),
+            help="left end of the base line in the robot's base [mm] (default: in the middle before the robot)",
+        )
+        write.add_argument("--pen", type=float, default=120.0, metavar="MM", help="length of the pen (default: 120)")
+        write.add_argument("--speed", type=float, default=100.0, metavar="MM/S", help="speed (default: 100)")
+        write.set_defaults(_command=_write)
+
+        draw = commands.add_parser("draw", help="run a program on an arm, and write what its pen draws as a picture")
+        _add_program(draw)
+        draw.add_argument("--robot", default="irb120", metavar="ARM", help="arm that moves (default: irb120)")
+        draw.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.svg", help="the picture")
+        draw.add_argument("--force", action="store_true", help="replace an existing picture")
+        draw.add_argument("--sheet", metavar="NAME", help="work object of the sheet (default: the program's first)")
+        draw.add_argument("--text", metavar="TEXT", help="letters that the drawing is compared with")
+        _add_text(draw)
+        draw.set_defaults(_command=_draw)
 
         server = commands.add_parser("server", help="language server for editors, on standard input and output")
         server.set_defaults(_command=_serve)
@@ -74,6 +85,30 @@ class RapidVerb:
         """Run the command."""
         status: int = args._command(args)
         return status
+
+
+def _add_program(parser: argparse.ArgumentParser) -> None:
+    """Declare which program runs, and with what around it."""
+    parser.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
+    parser.add_argument("--task", metavar="NAME", help="which program of a folder, such as T_ROB1")
+    parser.add_argument("--proc", default="main", metavar="NAME", help="procedure to run (default: main)")
+    parser.add_argument(
+        "--io", type=Path, action="append", default=[], metavar="EIO.cfg", help="configuration that declares signals"
+    )
+    parser.add_argument(
+        "--signal", action="append", default=[], metavar="NAME=VALUE", help="value that a signal begins with"
+    )
+    parser.add_argument(
+        "--home", type=Path, metavar="FOLDER", help="folder that HOME: stands for (default: that of the program)"
+    )
+    parser.add_argument(
+        "--sensor",
+        action="append",
+        default=[],
+        metavar="NAME=CONDITION",
+        help="input that is 1 where the tool's position in the base is so, such as diTouch=z<120 [mm]",
+    )
+    parser.add_argument("--max-time", type=float, metavar="S", help="end after so many seconds of robot time")
 
 
 def _check(args: argparse.Namespace) -> int:
@@ -126,6 +161,30 @@ def _run(args: argparse.Namespace) -> int:
     from daidalos.cli.daidalos.rapid_run import run_program
 
     return run_program(args)
+
+
+def _trace(args: argparse.Namespace) -> int:
+    from daidalos.cli.daidalos.rapid_run import trace_program
+
+    return trace_program(args)
+
+
+def _add_text(parser: argparse.ArgumentParser) -> None:
+    """Declare what letters look like."""
+    parser.add_argument("--font", type=Path, metavar="FILE.ttf", help="font (default: a single-stroke alphabet)")
+    parser.add_argument("--height", type=float, default=40.0, metavar="MM", help="height of capitals (default: 40)")
+
+
+def _write(args: argparse.Namespace) -> int:
+    from daidalos.cli.daidalos.rapid_letters import write_letters
+
+    return write_letters(args)
+
+
+def _draw(args: argparse.Namespace) -> int:
+    from daidalos.cli.daidalos.rapid_letters import draw_program
+
+    return draw_program(args)
 
 
 def _serve(args: argparse.Namespace) -> int:

@@ -6,6 +6,7 @@ import argparse
 import sys
 import threading
 import time
+from collections.abc import Callable
 from datetime import datetime
 from typing import TYPE_CHECKING
 
@@ -21,8 +22,70 @@ ENDLESS_S = 2.0
 """Seconds without motion, waiting or output after which a loop is named."""
 
 
+TRACE_PERIOD_S = 0.004
+"""Seconds between two samples of a report."""
+
+
 def run_program(args: argparse.Namespace) -> int:
     """Load and run a program; return 0 at its end, 2 after an error, 130 after Ctrl-C."""
+    task = load_task(args, None if args.fast else Pace(), 0.0)
+    if task is None:
+        return 2
+    status = run_task(task, args)
+    if args.save:
+        _save(task)
+    return status
+
+
+def trace_program(args: argparse.Namespace) -> int:
+    """Run a program on an arm, and write what it did as a report, after an error too.
+
+    Raises
+    ------
+    UserError
+        Where there is a file already, or nothing to report.
+    """
+    from daidalos.industry.rapid.report import Trace, render
+    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+
+    check_output(args)
+    task = load_task(args, None, TRACE_PERIOD_S)
+    if task is None:
+        return 2
+    status = run_task(task, args)
+    robot = task.robot
+    assert isinstance(robot, ArmRobot)
+    try:
+        trace = Trace.of(robot)
+    except ValueError as error:
+        raise UserError(f"{args.path}: {error}") from None
+    write_output(args, render(trace, args.path.name))
+    return status
+
+
+def check_output(args: argparse.Namespace) -> None:
+    """Raise a UserError where the output exists, and may not be replaced."""
+    if args.output.exists() and not args.force:
+        raise UserError(f"{args.output} exists; choose another name or add --force")
+
+
+def write_output(args: argparse.Namespace, text: str) -> None:
+    """Write the output.
+
+    Raises
+    ------
+    UserError
+        Where it cannot be written.
+    """
+    try:
+        args.output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{args.output}: cannot be written: {error.strerror}") from None
+    print(f"wrote {args.output}", file=sys.stderr)
+
+
+def load_task(args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float) -> Task | None:
+    """Return the task that the arguments describe; None, with the reasons printed, where it cannot run."""
     from daidalos.industry.rapid.inspection import read_signals
     from daidalos.industry.rapid.runtime.board import Board
     from daidalos.industry.rapid.runtime.errors import FatalError
@@ -36,25 +99,26 @@ def run_program(args: argparse.Namespace) -> int:
         for problem in report.errors:
             print(problem.text(report.file), file=sys.stderr)
     if blocking:
-        return 2
+        return None
     board = Board(signals, dict(_parse_signal(text) for text in args.signal))
-    robot = make_robot(args.robot, args.sensor, board)
-    pace = None if args.fast else Pace()
+    robot = make_robot(args.robot, args.sensor, board, sampling)
     try:
         home = args.home or (args.path if args.path.is_dir() else args.path.parent)
         task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time)
     except FatalError as error:
         print(f"error: {error}", file=sys.stderr)
-        return 2
+        return None
     if args.task:
         task.settings["name"] = args.task
+    return task
+
+
+def run_task(task: Task, args: argparse.Namespace) -> int:
+    """Run a task, and print how it ended; return the exit status."""
     watch = Watch(task)
     outcome = task.run(args.proc)
     watch.end()
-    status = _report(task, outcome, args.proc)
-    if args.save:
-        _save(task)
-    return status
+    return _report(task, outcome, args.proc)
 
 
 def make_robot(name: str | None, sensors: list[str], board: Board, sampling: float = 0.0) -> Robot | None:

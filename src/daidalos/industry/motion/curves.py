@@ -6,6 +6,7 @@ stands still counts `METRES_PER_RADIAN`, the ratio of the reorientation zones in
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import Literal
@@ -18,6 +19,7 @@ from daidalos.industry.motion.orientations import (
     Array,
     conjugate,
     from_rotation_vectors,
+    matrices,
     multiply,
     rotation_vectors,
     slerp,
@@ -34,6 +36,7 @@ SHORTEST = 1e-7
 _IN_PLACE = 0.1
 """Way of the tool as a share of what its rotation counts, up to which the movement is a rotation."""
 
+_LONG_TURN = math.radians(115.0)
 _LENGTH_SAMPLES = 33
 
 CircleMode = Literal["path", "object", "point"]
@@ -56,7 +59,7 @@ class Line:
     turned_from: Array
     turned_to: Array
 
-    @property
+    @functools.cached_property
     def length(self) -> float:
         """Return the length [m]."""
         way = float(np.linalg.norm(self.end - self.start))
@@ -136,7 +139,7 @@ class Circle:
         share = angles[0] / angles[1]
         return cls(start + to_centre, first, second, angles[1], share, *orientations, mode)
 
-    @property
+    @functools.cached_property
     def length(self) -> float:
         """Return the length [m]."""
         return self.angle * float(np.linalg.norm(self.first))
@@ -155,11 +158,22 @@ class Circle:
             return self._through_via(share)
         normal = np.cross(self.first, self.second)
         normal /= np.linalg.norm(normal)
-        about = from_rotation_vectors((self.angle * share)[:, None] * normal)
+        with_path = multiply(from_rotation_vectors(self.angle * share[:, None] * normal), self.turned_from)
+        return multiply(with_path, from_rotation_vectors(share[:, None] * self._turn_to_path(normal)))
+
+    def _turn_to_path(self, normal: Array) -> Array:
+        """Return the rotation vector by which the tool turns against the path, in the tool's frame.
+
+        It is the shorter one; where both are long, that with which the tool turns less in the base.
+        """
         at_end = multiply(from_rotation_vectors(self.angle * normal), self.turned_from)
-        return multiply(
-            multiply(about, self.turned_from), slerp(_NONE, multiply(conjugate(at_end), self.turned_to), share)
-        )
+        short = rotation_vectors(multiply(conjugate(at_end), self.turned_to))
+        size = float(np.linalg.norm(short))
+        if size < _LONG_TURN:
+            return short
+        with_path = self.angle * (matrices(self.turned_from[None])[0].T @ normal)
+        both = (short, short * (1.0 - 2.0 * math.pi / size))
+        return min(both, key=lambda one: float(np.linalg.norm(one + with_path)))
 
     def _through_via(self, share: Array) -> Array:
         """Return the rotation vectors' parabola through the orientation of the point between."""
@@ -201,8 +215,6 @@ class JointCurve:
 
 
 Curve = Line | Circle | JointCurve
-
-_NONE = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 def _angle(start: Array, end: Array) -> float:

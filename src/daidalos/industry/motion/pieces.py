@@ -103,8 +103,8 @@ def sample_tool_path(arm: Arm, tool: Array, poses: PoseFunction, x0: float, x1: 
     MotionFault
         As `branches.follow`.
     """
-    ends = poses(np.array([x0, x1]))
-    turned = 2.0 * math.acos(min(1.0, abs(float(ends[1][0] @ ends[1][1]))))
+    _, some = poses(np.linspace(x0, x1, _FEWEST))
+    turned = float(2.0 * np.arccos(np.minimum(np.abs(np.sum(some[1:] * some[:-1], axis=1)), 1.0)).sum())
     x = np.linspace(x0, x1, _count(x1 - x0, turned))
     positions, orientations = poses(x)
     return Sampled(x, follow(arm, flange_poses(positions, orientations, tool), start), positions, orientations)

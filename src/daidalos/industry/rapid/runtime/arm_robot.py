@@ -119,7 +119,7 @@ class ArmRobot:
     def _movement(self, move: Move) -> Movement:
         if not move.tool[0] or move.wobj[0]:
             raise FatalError("a stationary tool, or a work object that the robot holds, does not run with an arm")
-        tool, start = _matrix(move.tool[1]), self.planner.end_joints
+        tool, start = matrix_of(move.tool[1]), self.planner.end_joints
         zone = None
         if not move.zone[0]:
             zone = Zone(MM * move.zone[1], MM * move.zone[2], math.radians(move.zone[4]))
@@ -285,7 +285,8 @@ def _configuration(target: list[Any]) -> tuple[int, int, int, int]:
     return cf1, cf4, cf6, cfx
 
 
-def _matrix(pose: Pose) -> Array:
+def matrix_of(pose: Pose) -> Array:
+    """Return a pose in mm as a matrix (4, 4) in metres."""
     (x, y, z), (qw, qx, qy, qz) = pose
     norm = math.hypot(qw, qx, qy, qz)
     if not norm > 0.0:
