@@ -159,7 +159,8 @@ def built(workspace, tmp_path_factory):
         find_package(rclcpp REQUIRED)
         add_executable(plain src/plain.cpp)
         add_executable(talker src/talker.cpp)
-        ament_target_dependencies(talker rclcpp std_msgs)
+        find_package(moveit_core REQUIRED)
+        ament_target_dependencies(talker rclcpp moveit_core)
         install(TARGETS plain talker DESTINATION lib/${PROJECT_NAME})
         ament_python_install_package(${PROJECT_NAME})
         install(PROGRAMS scripts/reporter.py DESTINATION lib/${PROJECT_NAME})
@@ -216,7 +217,7 @@ def test_a_build_says_in_one_line_what_it_leaves_out(built):
     _, printed = built
     assert "Summary: 4 packages finished" in printed
     line = next(line for line in printed.splitlines() if "left out" in line)
-    assert line.startswith("mixed: left out: talker (C++ that needs rclcpp, std_msgs")
+    assert line.startswith("mixed: left out: talker (it needs the C++ package 'moveit_core', which is not there")
     assert "1 package had stderr output: mixed" in printed
 
 

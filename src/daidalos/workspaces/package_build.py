@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from daidalos.interfaces.library import read_definition
 from daidalos.workspaces.cmake.catkin import install_remaining
 from daidalos.workspaces.cmake.contents import Contents
 from daidalos.workspaces.cmake.reader import read_package
@@ -15,6 +16,7 @@ from daidalos.workspaces.compiling import Compilation, SkippedTarget, plan
 from daidalos.workspaces.executables import LEFT_OUT
 from daidalos.workspaces.installation import Installation
 from daidalos.workspaces.interface_package import install_interfaces
+from daidalos.workspaces.native.prefix import write_interfaces
 from daidalos.workspaces.package_tests import write_tests
 
 _INDEX = "share/ament_index/resource_index"
@@ -41,6 +43,13 @@ class Build:
     compilations: list[Compilation]
     left_out: list[SkippedTarget]
     installation: Installation
+    by_cmake: bool = False
+    """Whether CMake has installed what it builds, with the C++ side of the package's interfaces."""
+
+    @property
+    def needs_cmake(self) -> bool:
+        """Whether targets need C++ libraries, which only CMake finds."""
+        return any(target.why == "C++" for target in self.left_out)
 
 
 def begin(place: Place, cmake_arguments: Iterable[str] = ()) -> Build:
@@ -75,6 +84,10 @@ def finish(
     prefixes = [Path(folder) for folder in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if folder]
     if contents.interfaces:
         install_interfaces(name, contents.interfaces.files, installation, place.python_folder, prefixes)
+        if not build.by_cmake:
+            interfaces = [read_definition(path, name) for path in contents.interfaces.files]
+            for path in write_interfaces(name, interfaces, place.prefix):
+                installation.register_installed(path)
     for file in contents.files:
         installation.put(file.source, file.destination, file.executable)
     for package in contents.python_packages:

@@ -42,6 +42,10 @@ class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
         loop = asyncio.get_running_loop()
         try:
             build = await loop.run_in_executor(None, package_build.begin, place, arguments(args))
+            if build.needs_cmake:
+                status = await self._build_by_cmake(build, place, environment)
+                if status:
+                    return status
             for compilation in list(build.compilations):
                 completed = await run(self.context, compilation.command, cwd=args.path, env=environment)
                 if completed.returncode:
@@ -58,6 +62,26 @@ class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
         if line:
             self._post(StderrLine, f"{package.name}: {line}")
         self._create_environment(build.contents.hooks)
+        return 0
+
+    async def _build_by_cmake(self, build: Any, place: Any, environment: dict[str, str]) -> int:
+        """Build and install the C++ targets by CMake; those that cannot be built stay left out."""
+        from daidalos.workspaces import cmake_build
+
+        package = self.context.pkg
+        depends = sorted(dependency.name for dependency in package.get_dependencies(categories=["build"]))
+        task = cmake_build.Task(package.name, depends, arguments(self.context.args), environment)
+        loop = asyncio.get_running_loop()
+        commands = await loop.run_in_executor(
+            None, cmake_build.begin, build, place, task, lambda line: self._post(StdoutLine, line)
+        )
+        for command in commands:
+            completed = await run(self.context, command, cwd=place.build, env=environment, capture_output=True)
+            if completed.returncode:
+                said = cmake_build.explain(completed)
+                if said:
+                    self._post(StderrLine, f"{package.name}: {said}")
+                return int(completed.returncode)
         return 0
 
     def _post(self, kind: type, line: str) -> None:

@@ -1,0 +1,60 @@
+# Targets of rclcpp and of message packages.
+include_guard(GLOBAL)
+get_filename_component(DAIDALOS_CPP_PREFIX "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
+find_package(Threads REQUIRED)
+
+if(NOT TARGET daidalos::messages)
+  add_library(daidalos::messages INTERFACE IMPORTED GLOBAL)
+  set_target_properties(daidalos::messages PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${DAIDALOS_CPP_PREFIX}/include/rclcpp"
+    INTERFACE_COMPILE_FEATURES cxx_std_17)
+endif()
+
+# Define the targets and variables of a package of messages, whose headers are all there is to it.
+macro(daidalos_interface_package name include_dir)
+  foreach(_needed ${ARGN})
+    if(NOT ${_needed}_FOUND)
+      find_package(${_needed} REQUIRED)
+    endif()
+  endforeach()
+  if(NOT TARGET ${name}::${name}__rosidl_generator_cpp)
+    add_library(${name}::${name}__rosidl_generator_cpp INTERFACE IMPORTED GLOBAL)
+    set_target_properties(${name}::${name}__rosidl_generator_cpp PROPERTIES
+      INTERFACE_INCLUDE_DIRECTORIES "${include_dir}")
+    target_link_libraries(${name}::${name}__rosidl_generator_cpp INTERFACE daidalos::messages)
+    foreach(_needed ${ARGN})
+      target_link_libraries(${name}::${name}__rosidl_generator_cpp INTERFACE
+        ${_needed}::${_needed}__rosidl_generator_cpp)
+    endforeach()
+    foreach(_kind rosidl_typesupport_cpp rosidl_typesupport_introspection_cpp rosidl_typesupport_fastrtps_cpp)
+      add_library(${name}::${name}__${_kind} INTERFACE IMPORTED GLOBAL)
+      target_link_libraries(${name}::${name}__${_kind} INTERFACE ${name}::${name}__rosidl_generator_cpp)
+    endforeach()
+  endif()
+  set(${name}_TARGETS ${name}::${name}__rosidl_typesupport_cpp)
+  set(${name}_INCLUDE_DIRS "${include_dir}")
+  set(${name}_LIBRARIES)
+  set(${name}_FOUND TRUE)
+endmacro()
+
+# Define a package that is one library of the prefix, or headers only.
+macro(daidalos_library_package name)
+  foreach(_needed ${ARGN})
+    find_package(${_needed} REQUIRED)
+  endforeach()
+  if(NOT TARGET ${name}::${name})
+    add_library(${name}::${name} INTERFACE IMPORTED GLOBAL)
+    target_link_libraries(${name}::${name} INTERFACE daidalos::messages Threads::Threads)
+    foreach(_needed ${ARGN})
+      target_link_libraries(${name}::${name} INTERFACE ${${_needed}_TARGETS})
+    endforeach()
+    if("${name}" STREQUAL "rclcpp")
+      target_link_libraries(rclcpp::rclcpp INTERFACE
+        "${DAIDALOS_CPP_PREFIX}/lib/${CMAKE_SHARED_LIBRARY_PREFIX}rclcpp${CMAKE_SHARED_LIBRARY_SUFFIX}")
+    endif()
+  endif()
+  set(${name}_TARGETS ${name}::${name})
+  set(${name}_INCLUDE_DIRS)
+  set(${name}_LIBRARIES)
+  set(${name}_FOUND TRUE)
+endmacro()

@@ -1,0 +1,3 @@
+// The header of this name of upstream.
+#pragma once
+#include "daidalos/node_core.hpp"
