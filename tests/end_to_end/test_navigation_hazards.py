@@ -90,7 +90,7 @@ def test_a_box_that_crosses_the_way_is_not_touched(drive: Drive, world: World, c
 
 @pytest.mark.scenario(timeout=200, seed=1)
 def test_wheels_that_slip(drive: Drive) -> None:
-    drive.robot.set_friction(0.005)
+    drive.robot.set_friction(0.05)
     drive.end()
     if not drive.failure:
         assert error(drive) < 0.35

@@ -231,10 +231,11 @@ class MppiController(Controller):
             pull = self._controls * (np.float32(p.gamma) / self._deviations**2)
             rollouts.costs[:] += noise.reshape(p.batch_size, -1) @ pull.ravel()
         weights = _weights(rollouts, p.temperature)
-        axes = (rollouts.vx, rollouts.wz, rollouts.vy)[: self._deviations.size]
-        self._take(np.stack([weights @ axis for axis in axes], axis=-1), control, limits, scene)
+        change = (weights @ noise.reshape(p.batch_size, -1)).reshape(self._controls.shape)
+        self._take(self._controls + change, control, limits, scene)
         if self._single.collides[0]:
             best = int(np.argmin(rollouts.costs))
+            axes = (rollouts.vx, rollouts.wz, rollouts.vy)[: self._deviations.size]
             self._take(np.stack([axis[best] for axis in axes], axis=-1), control, limits, scene)
 
     def _limits(self) -> Limits:
@@ -267,7 +268,10 @@ class MppiController(Controller):
         """Set the current sequence and compute its trajectory."""
         self._controls[:] = controls
         still = np.zeros((1, *controls.shape), dtype=np.float32)
-        self._single.drive(control.pose, control.velocity, self._controls, still, limits, self.parameters.model_dt)
+        single = self._single
+        single.drive(control.pose, control.velocity, self._controls, still, limits, self.parameters.model_dt)
+        for axis, driven in zip(range(controls.shape[1]), (single.vx, single.wz, single.vy), strict=False):
+            self._controls[:, axis] = driven[0]
         for critic in self.critics:
             if critic.judges_contact:
                 critic.score(self._single, scene)

@@ -69,6 +69,7 @@ class MovingObstacleLayer(Layer):
         self._trackers = {name: MovingObstacleTracker(p.max_width, p.min_speed) for name in p.sources}
         self._strips: list[tuple[Array, Array, float]] = []
         self._robot = np.zeros(2)
+        self._stand: Array | None = None
         self._under_robot = self.context.footprint.at(np.zeros(3))
 
     @property
@@ -100,19 +101,25 @@ class MovingObstacleLayer(Layer):
             end = begin + track.velocity * p.prediction_time
             self._strips.append((begin, end, track.radius + p.margin))
             bounds = bounds.including(_bounds(*self._strips[-1]))
+        if not any((_distances(self._under_robot, begin, end) <= radius).any() for begin, end, radius in self._strips):
+            self._stand = None
+        elif self._stand is None:
+            self._stand = self._under_robot
         return bounds
 
     def update_costs(self, costmap: Costmap, window: Window) -> None:
-        """Mark the strips, except below the robot and a cell around it."""
+        """Mark the strips, except where the robot was as the first one reached it, and a cell around that."""
         from scipy.ndimage import binary_dilation
 
-        here = costmap.window_of(Bounds().including_points(self._under_robot).expanded(2.0 * costmap.resolution))
+        # Not where it is now: it would move on into them, cell by cell.
+        under = self._under_robot if self._stand is None else self._stand
+        here = costmap.window_of(Bounds().including_points(under).expanded(2.0 * costmap.resolution))
         before = costmap.costs[here.slices].copy()
         self._mark(costmap)
         if here.empty:
             return
         stand = Costmap(np.zeros_like(before), costmap.resolution, costmap.origin + _corner(here) * costmap.resolution)
-        fill_polygon(stand, self._under_robot, LETHAL_OBSTACLE)
+        fill_polygon(stand, under, LETHAL_OBSTACLE)
         below = binary_dilation(stand.costs == LETHAL_OBSTACLE)
         costmap.costs[here.slices][below] = before[below]
 
