@@ -48,3 +48,14 @@ def test_it_loads_into_the_simulator_without_a_word(name):
     simulation.advance(SECOND // 10)
     assert np.isfinite(simulation.pose(spawned).position).all()
     assert said == []
+
+
+@pytest.mark.parametrize("name", ["irb120", "irb1600", "irb6700"])
+def test_the_controlled_arm_stands_on_the_floor(name):
+    robot = urdf.load(SHARE / f"{name}_description/urdf/{name}_controlled.urdf.xacro", {}, share_of)
+    said = []
+    simulation = Simulation(world(), has_subscribers=lambda topic: False, warn=said.append)
+    simulation.spawn(robot)
+    simulation.advance(SECOND // 10)
+    assert robot.joints["world-base_link"].type is JointType.FIXED
+    assert said == []

@@ -43,6 +43,8 @@ class RapidVerb:
         run.add_argument("--fast", action="store_true", help="do not let real time pass with the robot's")
         run.add_argument("--save", action="store_true", help="write the values of persistents back into the modules")
         run.add_argument("--robot", metavar="ARM", help="arm that moves, such as irb120 (default: one without joints)")
+        run.add_argument("--sim", action="store_true", help="move the arm of `bringup.launch.py` in the simulator too")
+        run.add_argument("--action", metavar="NAME", help="move a real arm by this FollowJointTrajectory action")
         run.set_defaults(_command=_run)
 
         trace = commands.add_parser("trace", help="run a program on an arm, and write a report of its motion")

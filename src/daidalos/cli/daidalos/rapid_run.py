@@ -28,10 +28,38 @@ TRACE_PERIOD_S = 0.004
 
 def run_program(args: argparse.Namespace) -> int:
     """Load and run a program; return 0 at its end, 2 after an error, 130 after Ctrl-C."""
+    if args.sim or args.action:
+        return _run_on_action(args)
     task = load_task(args, None if args.fast else Pace(), 0.0)
     if task is None:
         return 2
     status = run_task(task, args)
+    if args.save:
+        _save(task)
+    return status
+
+
+def _run_on_action(args: argparse.Namespace) -> int:
+    """Run a program whose arm is moved by a controller of joint trajectories.
+
+    Raises
+    ------
+    UserError
+        Where no arm is named, there is no controller, or it stops.
+    """
+    from daidalos.cli.daidalos.rapid_action import ACTION, PERIOD_S, Follower
+    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+
+    if args.robot is None or args.fast:
+        raise UserError("--sim and --action need an arm, such as --robot irb120, and run at its pace, without --fast")
+    with Follower(args.action or ACTION, use_sim_time=args.sim) as follower:
+        task = load_task(args, follower, PERIOD_S)
+        if task is None:
+            return 2
+        assert isinstance(task.robot, ArmRobot)
+        follower.start(task.robot, follower.positions())
+        status = run_task(task, args)
+        follower.finish()
     if args.save:
         _save(task)
     return status

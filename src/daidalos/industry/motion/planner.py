@@ -119,6 +119,8 @@ class Planner:
         Time [s].
     is_stopped : bool
         Whether the arm rests, or comes to rest, on its path until `resume`.
+    version : int
+        Counts the plans that were made.
     corners : list of CornerReport
         All corner paths so far.
     warnings : list of str
@@ -129,6 +131,7 @@ class Planner:
     joints: Array
     now: float = 0.0
     is_stopped: bool = False
+    version: int = 0
     corners: list[CornerReport] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     _movements: list[Movement] = field(default_factory=list)
@@ -387,6 +390,7 @@ class Planner:
         """Stop on the path as fast as the limits allow."""
         self._plan()
         self.is_stopped = True
+        self.version += 1
         if self._profile is None or self.now >= float(self._profile.times[-1]):
             return
         position, speed = self._profile.cut(self.now)
@@ -428,6 +432,7 @@ class Planner:
         if self._is_planned or self.is_stopped:
             return
         self._is_planned = True
+        self.version += 1
         if self._profile is None:
             ramp = (
                 self.arm.ramp_time * min(self._movements[0].limits.acceleration, 1.0) / self._movements[0].limits.ramp

@@ -1,0 +1,26 @@
+"""The arm ABB IRB 120-3/0.6 in the simulator, under control; `daidalos rapid run --robot irb120 --sim` moves it."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    here = FindPackageShare("irb120_description")
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("world", default_value="", description="SDF world to simulate (default: empty)"),
+            DeclareLaunchArgument("gui", default_value="true", description="whether to serve the studio"),
+            IncludeLaunchDescription(
+                PathJoinSubstitution([FindPackageShare("humanoid_description"), "launch", "controlled.launch.py"]),
+                launch_arguments={
+                    "model": PathJoinSubstitution([here, "urdf", "irb120_controlled.urdf.xacro"]),
+                    "name": "irb120",
+                    "controllers": "joint_state_broadcaster joint_trajectory_controller",
+                    "world": LaunchConfiguration("world"),
+                    "gui": LaunchConfiguration("gui"),
+                }.items(),
+            ),
+        ]
+    )

@@ -1,0 +1,26 @@
+"""The arm ABB IRB 1600-6/1.45 in the simulator, under control; `daidalos rapid run --robot irb1600 --sim` moves it."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    here = FindPackageShare("irb1600_description")
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("world", default_value="", description="SDF world to simulate (default: empty)"),
+            DeclareLaunchArgument("gui", default_value="true", description="whether to serve the studio"),
+            IncludeLaunchDescription(
+                PathJoinSubstitution([FindPackageShare("humanoid_description"), "launch", "controlled.launch.py"]),
+                launch_arguments={
+                    "model": PathJoinSubstitution([here, "urdf", "irb1600_controlled.urdf.xacro"]),
+                    "name": "irb1600",
+                    "controllers": "joint_state_broadcaster joint_trajectory_controller",
+                    "world": LaunchConfiguration("world"),
+                    "gui": LaunchConfiguration("gui"),
+                }.items(),
+            ),
+        ]
+    )
