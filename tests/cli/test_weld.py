@@ -76,3 +76,25 @@ def test_experiment_refuses_what_is_wrong(tmp_path, capsys):
     assert "none.yaml: there is no such file" in capsys.readouterr().err
     assert main(["weld", "experiment", "line", "--seed", "-1"]) == 2
     assert "--seed is -1" in capsys.readouterr().err
+
+
+def test_a_robot_is_identified_from_poses_to_its_elasticity(tmp_path, capsys):
+    poses, measured, runs, mine = (str(tmp_path / name) for name in ("p.csv", "m.csv", "f.csv", "mine.yaml"))
+    assert main(["weld", "poses", "--count", "8", "-o", poses]) == 0
+    assert main(["weld", "measure", poses, "-o", measured, "--friction-output", runs]) == 0
+    capsys.readouterr()
+    assert main(["weld", "identify", measured, "--runs", runs, "-o", mine, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["axes"][0]["stiffness_nm_per_rad"] == pytest.approx(2.3e6, rel=0.1)
+    assert found["axes"][0]["backlash_arcmin"] == pytest.approx(5.01, abs=0.6)
+    assert [one["axis"] for one in found["friction"]] == [1, 2, 3, 4, 5, 6]
+    line = tmp_path / "line.csv"
+    line.write_text(LINE)
+    assert main(["weld", "plan", str(line), *WRENCH, "--elasticity", mine, "-o", str(tmp_path / "out")]) == 0
+    assert main(["weld", "identify", measured, "-o", mine]) == 2
+    assert "mine.yaml: is there already" in capsys.readouterr().err
+    assert main(["weld", "identify", poses]) == 2
+    assert "p.csv:1: has no column 'x_mm'" in capsys.readouterr().err
+    assert main(["weld", "poses", "--count", "1", "-o", poses]) == 2
+    assert main(["weld", "poses", "--tool", "0", "0", "500", "-o", str(tmp_path / "q.csv")]) == 2
+    assert "no poses load all axes" in capsys.readouterr().err

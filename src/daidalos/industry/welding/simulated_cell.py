@@ -82,7 +82,13 @@ class SimulatedCell:
         self._tip = mujoco.mj_name2id(self._model, mujoco.mjtObj.mjOBJ_SITE, "tip")
         self._last = mujoco.mj_name2id(self._model, mujoco.mjtObj.mjOBJ_BODY, "link_6")
 
-    def run(self, motors: NDArray[np.float64], wrenches: NDArray[np.float64], sample_period: float) -> Run:
+    def run(
+        self,
+        motors: NDArray[np.float64],
+        wrenches: NDArray[np.float64],
+        sample_period: float,
+        axes: NDArray[np.float64] | None = None,
+    ) -> Run:
         """Simulate.
 
         Parameters
@@ -90,9 +96,11 @@ class SimulatedCell:
         motors : array of shape (m, 6)
             The motors' angles after the gears, every `TIMESTEP` [rad].
         wrenches : array of shape (m, 6)
-            What the tool exerts on the workpiece, every `TIMESTEP`, in the tool's axes [N, Nm].
+            What the tool exerts on the workpiece, every `TIMESTEP` [N, Nm].
         sample_period : float
             Time between samples [s].
+        axes : array of shape (3, 3) or None
+            Axes of the wrenches in the base; None for those of the tool, which turn with it.
         """
         model, data, mujoco = self._model, self._data, self._mujoco
         data.qpos[:] = motors[0]
@@ -107,15 +115,15 @@ class SimulatedCell:
             if step % every == 0:
                 positions.append(data.site_xpos[self._tip].copy())
                 joints.append(data.qpos.copy())
-            self._apply(wrenches[step])
+            self._apply(wrenches[step], axes)
             mujoco.mj_step2(model, data)
         times = np.arange(len(positions), dtype=np.float64) * (TIMESTEP * every)
         return Run(times, np.array(positions), np.array(joints))
 
-    def _apply(self, wrench: NDArray[np.float64]) -> None:
+    def _apply(self, wrench: NDArray[np.float64], axes: NDArray[np.float64] | None) -> None:
         """Apply the workpiece's reaction and the torques of the counterbalance."""
         data = self._data
-        turn = data.site_xmat[self._tip].reshape(3, 3)
+        turn = axes if axes is not None else data.site_xmat[self._tip].reshape(3, 3)
         force, moment = -(turn @ wrench.reshape(2, 3).T).T
         data.qfrc_applied[:] = -self._balancing * np.sin(data.qpos)
         self._mujoco.mj_applyFT(
