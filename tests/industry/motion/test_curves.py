@@ -6,12 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, Slerp
 
 from daidalos.industry.motion.corners import PoseCorner
 from daidalos.industry.motion.curves import METRES_PER_RADIAN, Circle, CircleMode, Line
 from daidalos.industry.motion.faults import MotionFault
 from daidalos.industry.motion.orientations import multiply, slerp
+from daidalos.industry.motion.spline_kernels import spline_slopes, spline_values
 
 DOWN = np.array([0.0, 1.0, 0.0, 0.0])
 
@@ -80,3 +82,17 @@ def test_corner_between_lines_is_the_parabola() -> None:
 def test_rotation_in_place_counts_as_length() -> None:
     line = Line(np.zeros(3), np.zeros(3), turned(0), turned(90))
     assert line.length == pytest.approx(METRES_PER_RADIAN * math.pi / 2) == pytest.approx(0.9)
+
+
+@pytest.mark.parametrize("count", [4, 5, 40])
+def test_splines_are_those_of_scipy(count: int) -> None:
+    x = np.linspace(0.3, 1.7, count)
+    values = np.stack([np.sin(3.0 * x), np.exp(x), x**3], axis=1)
+    slopes = np.empty_like(values)
+    spline_slopes(x[1] - x[0], values, slopes)
+    places = np.linspace(0.3, 1.7, 57)
+    found = [np.empty((57, 3)) for _ in range(3)]
+    spline_values(0.3, x[1] - x[0], values, slopes, places, *found)
+    wanted = CubicSpline(x, values)
+    for order, one in enumerate(found):
+        assert one == pytest.approx(wanted(places, order), abs=1e-9)

@@ -8,8 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from benchmarks.motion_reference import polyline_with_parabolas, solve
 from daidalos.industry.motion.branches import joints_at
 from daidalos.industry.motion.corners import Zone
 from daidalos.industry.motion.curves import JointCurve, Line
@@ -181,3 +183,15 @@ def test_wrist_singularity_on_a_line() -> None:
     share = sampled.x / line.length
     assert positions == pytest.approx(line.start + share[:, None] * (line.end - line.start), abs=1e-9)
     assert sampled.joints[-1] == pytest.approx(after, abs=1e-8)
+
+
+def test_blended_motion_against_a_fine_reference() -> None:
+    planner, corners = square(0.25), [*SQUARE, SQUARE[0]]
+    duration = planner.remaining()
+    rotation = matrices(DOWN[None])[0]
+    path = polyline_with_parabolas(corners, 0.01, 0.002)
+    reference = solve(ARM, path, rotation, angles_at(SQUARE[0]), 0.25)
+    assert duration == pytest.approx(reference.time, rel=0.03)
+    tcp = forward(ARM, planner.joints_at(np.linspace(0.0, duration, 1001)))[:, :3, 3]
+    gaps = cKDTree(polyline_with_parabolas(corners, 0.01, 0.00004)).query(tcp)[0]
+    assert gaps.max() < 0.1e-3

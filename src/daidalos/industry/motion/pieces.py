@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from daidalos.industry.motion.branches import check_ranges, flange_poses, follow
@@ -15,6 +14,7 @@ from daidalos.industry.motion.curves import Circle, Curve, JointCurve, Line
 from daidalos.industry.motion.faults import OUT_OF_REACH, MotionFault
 from daidalos.industry.motion.kinematics import forward
 from daidalos.industry.motion.orientations import Array, continuous
+from daidalos.industry.motion.spline_kernels import spline_slopes, spline_values
 from daidalos.industry.robots import Arm
 
 _STEP = 0.005
@@ -61,7 +61,7 @@ class Sampled:
     Parameters
     ----------
     x
-        Distances (n,), rising.
+        Distances (n,), equally spaced.
     joints
         Angles (n, 6) [rad].
     positions, orientations
@@ -71,23 +71,30 @@ class Sampled:
     def __init__(self, x: Array, joints: Array, positions: Array, orientations: Array) -> None:
         self.x = x
         self.joints = joints
-        values = np.concatenate([joints, positions, continuous(orientations)], axis=1)
-        self._spline = CubicSpline(x, values)
+        self._values = np.concatenate([joints, positions, continuous(orientations)], axis=1)
+        self._step = float(x[-1] - x[0]) / (len(x) - 1)
+        self._slopes = np.empty_like(self._values)
+        spline_slopes(self._step, self._values, self._slopes)
+
+    def _evaluate(self, x: Array) -> tuple[Array, Array, Array]:
+        out, first, second = (np.empty((len(x), self._values.shape[1])) for _ in range(3))
+        spline_values(float(self.x[0]), self._step, self._values, self._slopes, x, out, first, second)
+        return out, first, second
 
     def derivatives(self, x: Array) -> tuple[Array, Array, Array, Array, Array]:
         """Return q (n, 6), q', q'', and the rates of translation (n,) and rotation (n,) [rad/m]."""
-        first = self._spline(x, 1)
-        speed = np.linalg.norm(first[:, 6:9], axis=1)
-        turning = 2.0 * np.linalg.norm(first[:, 9:], axis=1)
-        return self._spline(x)[:, :6], first[:, :6], self._spline(x, 2)[:, :6], speed, turning
+        values, first, second = self._evaluate(x)
+        speed = np.sqrt(np.square(first[:, 6:9]).sum(axis=1))
+        turning = 2.0 * np.sqrt(np.square(first[:, 9:]).sum(axis=1))
+        return values[:, :6], first[:, :6], second[:, :6], speed, turning
 
     def joints_at(self, x: Array) -> Array:
         """Return angles (n, 6)."""
-        return np.asarray(self._spline(x)[:, :6])
+        return self._evaluate(x)[0][:, :6]
 
     def positions_at(self, x: Array) -> Array:
         """Return positions of the tool (n, 3) [m]."""
-        return np.asarray(self._spline(x)[:, 6:9])
+        return self._evaluate(x)[0][:, 6:9]
 
     @property
     def positions(self) -> Array:
