@@ -31,11 +31,14 @@ class OccupancyGrid:
         Side of a cell [m].
     origin : tuple of float
         Pose (x, y, yaw) of the lower left corner of cell (0, 0).
+    frame : str
+        Frame of the origin; empty where it is not told.
     """
 
     data: Occupancy
     resolution: float
     origin: tuple[float, float, float]
+    frame: str = ""
 
 
 class ScanGrid:

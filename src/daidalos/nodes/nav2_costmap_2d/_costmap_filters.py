@@ -28,7 +28,7 @@ def occupancy_grid(message: Any) -> OccupancyGrid:
         The message contradicts itself.
     """
     x, y, yaw = (float(value) for value in pose2_of(message.info.origin))
-    return OccupancyGrid(grid_array(message), message.info.resolution, (x, y, yaw))
+    return OccupancyGrid(grid_array(message), message.info.resolution, (x, y, yaw), message.header.frame_id)
 
 
 def listen_to_filter_info(node: CostmapNode, listened: Input) -> None:

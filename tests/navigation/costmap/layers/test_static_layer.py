@@ -1,10 +1,15 @@
 """Maps as a layer: what changed, and where it lies."""
 
+import math
+
 import numpy as np
 import pytest
 
+from daidalos.common.pose2 import transform_points
 from daidalos.mapping.grid import OccupancyGrid
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import Bounds, Costmap, CostmapError
+from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.static_layer import StaticLayer, StaticLayerParameters
 
 
@@ -63,3 +68,31 @@ def test_an_empty_or_turned_map_is_refused():
         StaticLayer().set_map(grid(np.zeros((0, 0))))
     with pytest.raises(CostmapError, match="turned"):
         StaticLayer().set_map(grid([[0]], origin=(0.0, 0.0, 0.3)))
+
+
+def in_odometry(place: tuple[np.ndarray, float] | None) -> tuple[LayeredCostmap, StaticLayer]:
+    """Return a costmap in the frame odom, and its layer of a map of an obstacle at (2, 1) to (2.1, 1.1) in map."""
+    layer = StaticLayer(None, NavigationContext(global_frame="odom", locate=lambda frame: place))
+    data = np.zeros((40, 60), dtype=np.int8)
+    data[20:22, 40:42] = 100
+    layer.set_map(OccupancyGrid(data, 0.05, (0.0, 0.0, 0.0), "map"))
+    return LayeredCostmap(CostmapParameters(6.0, 6.0, 0.05, rolling_window=True), [layer]), layer
+
+
+def test_a_map_in_another_frame_is_placed_by_the_transform() -> None:
+    place = np.array([0.5, -0.3, math.pi / 2])
+    layered, layer = in_odometry((place, 0.1))
+    layered.update(np.zeros(3), 0.0)
+    x, y = transform_points(place, np.array([[2.05, 1.05]]))[0]
+    assert layered.costmap.cost_at(float(x), float(y)) == 254
+    assert (layered.costmap.costs == 254).sum() == 4
+    assert layer.missing_input(0.0) == ""
+    assert layer.age_of_input(0.0) == pytest.approx(0.1 / 0.3)
+
+
+@pytest.mark.parametrize(("place", "problem"), [(None, "there is no transform"), ((np.zeros(3), 0.5), "is 0.5 s old")])
+def test_a_map_whose_place_is_not_known_makes_the_costmap_out_of_date(
+    place: tuple[np.ndarray, float] | None, problem: str
+) -> None:
+    _, layer = in_odometry(place)
+    assert problem in layer.missing_input(0.0)

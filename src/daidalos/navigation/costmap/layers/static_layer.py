@@ -6,6 +6,7 @@ import numpy as np
 
 from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.pose2 import inverse, transform_points
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import EVERYWHERE, Bounds, Costmap, CostmapError, Window
@@ -30,11 +31,21 @@ class StaticLayerParameters(Parameters):
     map_subscribe_transient_local: bool = parameter(
         True, "Whether a map that was published before is taken from a latched topic.", read_only=True
     )
+    transform_tolerance: float = parameter(
+        0.3,
+        "Age of the transform from the map's frame to that of the costmap from which the costmap is out of date.",
+        unit="s",
+        above=0.0,
+    )
     enabled: bool = parameter(True, "Whether the layer is used.")
 
 
 class StaticLayer(Layer):
-    """Layer of a map's obstacles, whose size and origin the costmap takes over."""
+    """Layer of a map's obstacles, whose size and origin the costmap takes over where both have the same frame.
+
+    A map in another frame, such as in a costmap around the robot in the frame of the odometry, is placed by the latest
+    transform.
+    """
 
     names = ("nav2_costmap_2d::StaticLayer",)
     Parameters = StaticLayerParameters
@@ -45,6 +56,8 @@ class StaticLayer(Layer):
     ) -> None:
         super().__init__(parameters, context)
         self._map: Costmap | None = None
+        self._frame = ""
+        self._place = np.zeros(3)
         self._changed = Bounds()
 
     @property
@@ -54,8 +67,29 @@ class StaticLayer(Layer):
         return (Input(p.map_topic, OccupancyGrid, self.set_map, latched=p.map_subscribe_transient_local),)
 
     def missing_input(self, now: float) -> str:
-        """Return that there is no map until one has come."""
-        return "" if self._map is not None else "there is no map"
+        """Return that there is no map until one has come, or that its place is not known."""
+        if self._map is None:
+            return "there is no map"
+        if not self._is_elsewhere:
+            return ""
+        found = self.context.locate(self._frame)
+        frames = f"from the map's frame '{self._frame}' to {self.context.global_frame}"
+        if found is None:
+            return f"there is no transform {frames}"
+        tolerance = self.parameters.transform_tolerance
+        if found[1] > tolerance:
+            return f"the transform {frames} is {found[1]:.3g} s old, longer than transform_tolerance {tolerance:g} s"
+        return ""
+
+    def age_of_input(self, now: float) -> float:
+        """Implement `Layer.age_of_input` by the transform's age."""
+        found = self.context.locate(self._frame) if self._is_elsewhere else None
+        return 0.0 if found is None else found[1] / self.parameters.transform_tolerance
+
+    @property
+    def _is_elsewhere(self) -> bool:
+        """Whether the map's frame is another one than the costmap's."""
+        return self._frame not in ("", self.context.global_frame)
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Set the map; only differences to the last one are updated.
@@ -79,21 +113,29 @@ class StaticLayer(Layer):
         )
         latest = Costmap(costs, grid.resolution, (x, y))
         self._changed = self._changed.including(_difference(self._map, latest))
-        self._map = latest
+        self._map, self._frame = latest, grid.frame
 
     @property
     def extent(self) -> Costmap | None:
-        """Current map."""
-        return self._map
+        """Current map; None where the costmap cannot take over its size."""
+        return None if self._is_elsewhere else self._map
 
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
         """Return the bounds of the changes between the last two maps."""
         changed, self._changed = self._changed, Bounds()
+        if self._is_elsewhere:
+            found = self.context.locate(self._frame)
+            if found is not None:
+                self._place = found[0]
+            return EVERYWHERE
         return bounds.including(changed)
 
     def update_costs(self, costmap: Costmap, window: Window) -> None:
         """Copy the map below all other layers."""
         if self._map is None:
+            return
+        if self._is_elsewhere:
+            self._copy_turned(self._map, costmap, window)
             return
         offset = (costmap.origin - self._map.origin) / costmap.resolution
         right, up = round(float(offset[0])), round(float(offset[1]))
@@ -103,6 +145,17 @@ class StaticLayer(Layer):
             costmap.costs[bottom:stop_row, left:stop_column] = self._map.costs[
                 bottom + up : stop_row + up, left + right : stop_column + right
             ]
+
+    def _copy_turned(self, source: Costmap, costmap: Costmap, window: Window) -> None:
+        """Copy the cells of a map in another frame that lie below the middles of those of the window."""
+        rows, columns = np.mgrid[window.slices]
+        points = costmap.origin + (np.stack([columns, rows], axis=-1).reshape(-1, 2) + 0.5) * costmap.resolution
+        there = transform_points(inverse(self._place), points)
+        column, row = np.floor((there - source.origin) / source.resolution).astype(np.int64).T
+        inside = (column >= 0) & (row >= 0) & (column < source.width) & (row < source.height)
+        costs = costmap.costs[window.slices].reshape(-1)
+        costs[inside] = source.costs[row[inside], column[inside]]
+        costmap.costs[window.slices] = costs.reshape(rows.shape)
 
 
 def _difference(before: Costmap | None, after: Costmap) -> Bounds:
