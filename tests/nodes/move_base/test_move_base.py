@@ -15,7 +15,9 @@ from nav_msgs.srv import GetPlan
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty
 
+from daidalos.common.errors import UserError
 from daidalos.nodes.conversions import grid_message, path_array, pose_stamped, transform_stamped
+from daidalos.nodes.move_base._parameters import MoveBaseParameters, recoveries
 from daidalos.nodes.move_base.move_base import MoveBase
 from daidalos.samples.fields import time_message
 from nodes.stepped import LATCHED, Stage
@@ -177,16 +179,13 @@ def test_plans_for_others_and_costmaps_that_are_cleared(bench: Bench) -> None:
     assert bench.robot.is_standing
 
 
-@pytest.mark.slow
-def test_the_robot_recovers_where_an_obstacle_that_has_gone_stays_in_the_costmap(
-    stage: Callable[[dict[str, Any]], Stage],
-) -> None:
-    """A wall is seen once, a metre ahead, and its sensor clears nothing: the reset far from the robot makes way."""
+def behind_a_wall_that_has_gone(stage: Callable[[dict[str, Any]], Stage], **parameters: Any) -> Bench:
+    """Return a robot that has seen a wall, a metre ahead, by a sensor that clears nothing."""
     forgetful = {
         name: {**PARAMETERS[name], "scan": {"topic": "scan", "clearing": False}}
         for name in ("global_costmap", "local_costmap")
     }
-    bench = Bench(stage({"/move_base": {**PARAMETERS, **forgetful}}))
+    bench = Bench(stage({"/move_base": {**PARAMETERS, **forgetful, **parameters}}))
     angles = -1.5 + 0.02 * np.arange(151)
     for _ in range(10):
         scan = LaserScan(angle_min=-1.5, angle_increment=0.02, range_min=0.1, range_max=10.0)
@@ -194,7 +193,41 @@ def test_the_robot_recovers_where_an_obstacle_that_has_gone_stays_in_the_costmap
         scan.header.frame_id, scan.header.stamp = "base_scan", bench.stage.stamp
         bench.scans.publish(scan)
         bench.stage.step()
+    return bench
+
+
+@pytest.mark.slow
+def test_the_robot_recovers_where_an_obstacle_that_has_gone_stays_in_the_costmap(
+    stage: Callable[[dict[str, Any]], Stage],
+) -> None:
+    """The reset far from the robot makes way."""
+    bench = behind_a_wall_that_has_gone(stage)
     told: list[Any] = []
     status, result = bench.go(1.0, -1.0, feedback=told.append)
     assert (status, result.error_msg) == (GoalStatus.STATUS_SUCCEEDED, "")
     assert told[-1].feedback.number_of_recoveries >= 1
+
+
+@pytest.mark.slow
+def test_the_robot_moves_slowly_at_first_after_it_has_cleared_what_is_around_it(
+    stage: Callable[[dict[str, Any]], Stage],
+) -> None:
+    bench = behind_a_wall_that_has_gone(
+        stage,
+        recovery_behaviors="[{'name': 'slow', 'type': 'move_slow_and_clear/MoveSlowAndClear'}]",
+        slow={"clearing_distance": 4, "limited_trans_speed": 0.1, "limited_rot_speed": 0.45, "limited_distance": 0.4},
+    )
+    begun = len(bench.robot.commands)
+    status, result = bench.go(1.0, -1.0)
+    assert (status, result.error_msg) == (GoalStatus.STATUS_SUCCEEDED, "")
+    speeds = np.array(bench.robot.commands[begun:])[:, 0]
+    driven = np.cumsum(np.abs(speeds)) * 0.1
+    assert np.abs(speeds[driven < 0.35]).max() <= 0.1 + 1e-6
+    assert speeds[driven > 0.6].max() > 0.3
+
+
+@pytest.mark.parametrize("value", [0, -1.0, True, "fast"])
+def test_a_recovery_with_a_parameter_that_is_no_positive_number_is_refused(value: Any) -> None:
+    text = "[{'name': 'slow', 'type': 'move_slow_and_clear/MoveSlowAndClear'}]"
+    with pytest.raises(UserError, match=r"'slow.limited_distance' must be a positive number"):
+        recoveries(MoveBaseParameters(recovery_behaviors=text), {"slow.limited_distance": value}, 0.2)

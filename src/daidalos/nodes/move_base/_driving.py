@@ -12,7 +12,8 @@ from rclpy.node import Node
 
 from daidalos.navigation.errors import NavigationError
 from daidalos.nodes.cycles import Cycle
-from daidalos.nodes.move_base._parameters import CLEAR, MoveBaseParameters, Recovery
+from daidalos.nodes.move_base._parameters import CLEAR, SLOW, MoveBaseParameters, Recovery
+from daidalos.nodes.move_base._slow_motion import SlowMotion
 
 _COSTMAPS = ("global_costmap", "local_costmap")
 _PLAN_HZ = 5.0
@@ -39,7 +40,7 @@ class Driver:
 
     def __init__(self, node: Node, behaviours: list[Recovery], locate: Callable[[], Any]) -> None:
         from nav2_msgs.action import ComputePathToPose, FollowPath, Spin
-        from nav2_msgs.srv import ClearCostmapExceptRegion, ClearEntireCostmap
+        from nav2_msgs.srv import ClearCostmapAroundRobot, ClearCostmapExceptRegion, ClearEntireCostmap
 
         below = node.get_fully_qualified_name()
         self._node, self._behaviours, self._locate = node, behaviours, locate
@@ -49,6 +50,10 @@ class Driver:
         self._clear = [
             node.create_client(ClearCostmapExceptRegion, f"{below}/{name}/clear_except_{name}") for name in _COSTMAPS
         ]
+        self._clear_around = [
+            node.create_client(ClearCostmapAroundRobot, f"{below}/{name}/clear_around_{name}") for name in _COSTMAPS
+        ]
+        self._slow_motion = SlowMotion(node, f"{below}/speed_limit", locate)
         self._clear_all = [
             node.create_client(ClearEntireCostmap, f"{below}/{name}/clear_entirely_{name}") for name in _COSTMAPS
         ]
@@ -173,11 +178,17 @@ class Driver:
 
     async def _recover(self, recovery: Recovery, is_wanted: Callable[[], bool]) -> None:
         from nav2_msgs.action import Spin
-        from nav2_msgs.srv import ClearCostmapExceptRegion
+        from nav2_msgs.srv import ClearCostmapAroundRobot, ClearCostmapExceptRegion
 
         if recovery.type == CLEAR:
             for client in self._clear:
                 await client.call_async(ClearCostmapExceptRegion.Request(reset_distance=recovery.reset_distance))
+            return
+        if recovery.type == SLOW:
+            self._slow_motion.begin(recovery.limited_trans_speed, recovery.limited_distance)
+            edge = 2.0 * recovery.clearing_distance
+            for client in self._clear_around:
+                await client.call_async(ClearCostmapAroundRobot.Request(reset_distance=edge))
             return
         request = Spin.Goal(target_yaw=2.0 * math.pi)
         request.time_allowance.sec = 30

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Any
 
 from daidalos.common.errors import UserError
@@ -11,6 +12,7 @@ from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.suggestions import hint
 
 CLEAR, ROTATE = "clear_costmap_recovery/ClearCostmapRecovery", "rotate_recovery/RotateRecovery"
+SLOW = "move_slow_and_clear/MoveSlowAndClear"
 AGGRESSIVE_RADII = 4.0
 """Edge of the square that the last reset leaves, in radii of the robot, as in ROS 1."""
 
@@ -62,14 +64,29 @@ class Recovery:
     Attributes
     ----------
     name, type : str
-        As in ROS 1; the type is `CLEAR` or `ROTATE`.
+        As in ROS 1; the type is `CLEAR`, `ROTATE` or `SLOW`.
     reset_distance : float
         Edge [m] of the square around the robot that a reset leaves.
+    clearing_distance, limited_trans_speed, limited_distance : float
+        For slow motion: distance [m] from the robot up to which costmaps are cleared, speed [m/s], and distance [m]
+        after which the speed is not limited any more.
     """
 
     name: str
     type: str
     reset_distance: float = 0.0
+    clearing_distance: float = 0.5
+    limited_trans_speed: float = 0.25
+    limited_distance: float = 0.3
+
+    @property
+    def parameters(self) -> set[str]:
+        """Names of its parameters."""
+        names = {
+            CLEAR: ("reset_distance",),
+            SLOW: ("clearing_distance", "limited_trans_speed", "limited_distance"),
+        }.get(self.type, ())
+        return {f"{self.name}.{one}" for one in names}
 
 
 def recoveries(parameters: MoveBaseParameters, given: dict[str, Any], robot_radius: float) -> list[Recovery]:
@@ -123,6 +140,26 @@ def _entries(text: str) -> list[tuple[str, str]]:
 def _listed(entry: tuple[str, str], given: dict[str, Any]) -> Recovery:
     name, kind = entry
     kind = kind.replace("::", "/")
-    if kind not in (CLEAR, ROTATE):
-        raise UserError(f"'recovery_behaviors': there is no recovery '{kind}'{hint(kind, [CLEAR, ROTATE])}")
-    return Recovery(name, kind, float(given.get(f"{name}.reset_distance", 3.0)))
+    known = [CLEAR, ROTATE, SLOW]
+    if kind not in known:
+        raise UserError(f"'recovery_behaviors': there is no recovery '{kind}'{hint(kind, known)}")
+    if kind != SLOW:
+        return Recovery(name, kind, float(given.get(f"{name}.reset_distance", 3.0)))
+    found = Recovery(name, kind)
+    values: dict[str, Any] = {
+        path.rpartition(".")[2]: _positive(path, given[path]) for path in found.parameters if path in given
+    }
+    return replace(found, **values)
+
+
+def _positive(name: str, value: Any) -> float:
+    """Return the value of a parameter that is a positive number.
+
+    Raises
+    ------
+    UserError
+        It is not.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
+        raise UserError(f"'{name}' must be a positive number, got {value!r}")
+    return float(value)

@@ -16,7 +16,7 @@ from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.nodes.action_results import set_error
 from daidalos.nodes.conversions import pose2_of, pose2_of_transform, pose_stamped
 from daidalos.nodes.move_base._driving import Driver, GoalFailed, Interrupted
-from daidalos.nodes.move_base._parameters import MoveBaseParameters, recoveries
+from daidalos.nodes.move_base._parameters import SLOW, MoveBaseParameters, recoveries
 from daidalos.nodes.move_base._servers import Servers
 from daidalos.nodes.move_base._translation import translate
 from daidalos.nodes.parameters import declare, declare_given, declare_without_effect
@@ -31,6 +31,7 @@ _WITHOUT_EFFECT = {
     "make_plan_add_unreachable_goal": "a plan ends where the planner's tolerance allows",
 }
 """Parameters of some of ROS 1's releases that do nothing here, with the reason."""
+_NO_TURN_LIMIT = "a limit of the speed is one of the speed ahead; the controller's own limit of turns stays"
 _NO_MEANING = "the planner or controller that stands for ROS 1's has nothing like it"
 
 
@@ -58,8 +59,10 @@ class MoveBase(Node):
         self._frames = whole["global_frame"], whole["robot_base_frame"]
         outline = Footprint.from_parameters(local.get("footprint", "[]"), local.get("robot_radius", 0.1), 0.0)
         behaviours = recoveries(p, given, outline.circumscribed_radius)
-        used = translation.used | {f"{one.name}.reset_distance" for one in behaviours}
-        declare_without_effect(self, _WITHOUT_EFFECT | dict.fromkeys(sorted(translation.without_effect), _NO_MEANING))
+        used = translation.used.union(*(one.parameters for one in behaviours))
+        turn_limits = {f"{one.name}.limited_rot_speed": _NO_TURN_LIMIT for one in behaviours if one.type == SLOW}
+        no_meaning = dict.fromkeys(sorted(translation.without_effect), _NO_MEANING)
+        declare_without_effect(self, _WITHOUT_EFFECT | turn_limits | no_meaning)
         declare_given(self, used)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
