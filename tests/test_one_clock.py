@@ -18,6 +18,7 @@ OTHER_CLOCKS = {
     "ClockType": {"STEADY_TIME", "SYSTEM_TIME"},
 }
 ALLOWED = {
+    "industry/assistance/light_tower.py": "the repetition of DMX levels that Art-Net asks for",
     "industry/lighting/device.py": "how long a broker is lost, and how often the state is published",
     "industry/lighting/embedded_broker.py": "one turn of an event loop at its end",
     "industry/lighting/engine.py": "the pace of DMX frames, which lamps expect in real time",
@@ -32,6 +33,7 @@ ALLOWED = {
     "nodes/hector_mapping/hector_mapping.py": "the computing time of a scan, where output_timing asks for it",
     "nodes/joy/_node.py": "when to look for a device again",
     "nodes/keyboard.py": "how long a person has to press a key",
+    "nodes/mqtt_client/_bridges.py": "the times of sending and arrival, which the latency is computed from",
     "nodes/nav2_planner/planner_server.py": "the computing time that the result of a plan reports",
     "nodes/nav2_route/route_server.py": "the computing time that is limited and reported",
     "nodes/nav2_smoother/smoother_server.py": "duration of smoothing",

@@ -16,6 +16,7 @@ from daidalos.common.extensions import ExtensionError, Kind
 
 _DESCRIPTIONS = {
     "arm": "Compute poses, joint angles and configurations of industrial robots",
+    "assist": "Lead a worker through a sequence with lights and projectors",
     "bench": "Run a scenario many times, with other seeds and parameters",
     "demo": "A robot that maps an arena and drives where it is sent",
     "diff": "Compare two bags, message by message",

@@ -78,6 +78,28 @@ def parse_url(url: str) -> Address:
     )
 
 
+def make_client(identity: str, parameters: MqttParameters, address: Address) -> Any:
+    """Return a client of paho-mqtt that is not connected yet.
+
+    Raises
+    ------
+    UserError
+        When paho-mqtt is missing, or certificates cannot be read.
+    """
+    try:
+        import paho.mqtt.client as mqtt
+    except ImportError:
+        raise UserError("MQTT needs paho-mqtt; run: pip install 'daidalos[industry]'") from None
+    client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=identity, clean_session=False)
+    user, password = address.user or parameters.user, address.password or parameters.password
+    if user:
+        client.username_pw_set(user, password or None)
+    if address.is_encrypted:
+        client.tls_set_context(_tls(parameters))
+    client.reconnect_delay_set(min_delay=1, max_delay=5)
+    return client
+
+
 class MqttDevice:
     """One head on a broker, connected until `close`.
 
@@ -144,20 +166,8 @@ class MqttDevice:
         self._client.loop_stop()
 
     def _make_client(self, address: Address) -> Any:
-        try:
-            import paho.mqtt.client as mqtt
-        except ImportError:
-            raise UserError("MQTT needs paho-mqtt; run: pip install 'daidalos[industry]'") from None
-        client = mqtt.Client(
-            mqtt.CallbackAPIVersion.VERSION2, client_id=f"daidalos-{self._name}", clean_session=False
-        )  # fmt: skip
-        user, password = address.user or self._parameters.user, address.password or self._parameters.password
-        if user:
-            client.username_pw_set(user, password or None)
-        if address.is_encrypted:
-            client.tls_set_context(_tls(self._parameters))
+        client = make_client(f"daidalos-{self._name}", self._parameters, address)
         client.will_set(f"{self._name}/availability", "offline", qos=1, retain=True)
-        client.reconnect_delay_set(min_delay=1, max_delay=5)
         client.on_connect, client.on_disconnect = self._connected, self._disconnected
         client.on_connect_fail = self._unreachable
         client.on_subscribe, client.on_message = self._subscribed, self._received
