@@ -56,7 +56,7 @@ def curve_rows(experiment: Experiment) -> list[Row]:
     """Return the rows of the curve of nine zones."""
     rows = []
     planned = experiment.plans["corrected"]
-    model = 1e3 * model_deflections(planned)[:, :3]
+    model = -1e3 * model_deflections(planned)[:, :3]
     zones = np.array(planned.seam.zones)
     printed = {"1": (-2.3, -1.6), "3": (-1.5, 2.2), "5": (-1.9, -0.6), "7": (1.3, -1.3), "9": (-0.4, -0.4)}
     for zone, (across, ahead) in printed.items():

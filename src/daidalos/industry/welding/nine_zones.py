@@ -2,7 +2,7 @@
 
 The workshop prints neither the place of the line nor the curve. The line's place is the one at which the published
 stiffness gives the printed deflections; the directions of the curve's zones 1, 3, 5, 7 and 9 are those for which a
-deflection towards the robot's base has the printed shares ahead and across, and arcs join them.
+deviation away from the robot's base has the printed shares ahead and across, and arcs join them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from daidalos.industry.welding.seam import Seam
 
 LINE_POINTS = 100
 LINE_LENGTH = 0.4
-HEADINGS = tuple(math.radians(angle) for angle in (55.0, 146.0, 72.0, -45.0, 45.0))
+HEADINGS = tuple(math.radians(angle) for angle in (235.0, 326.0, 252.0, 135.0, 225.0))
 STRAIGHT_LENGTH = 0.06
 ARC_RADIUS = 0.04
 CURVE_STEP = 1e-3

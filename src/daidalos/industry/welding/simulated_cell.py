@@ -1,7 +1,7 @@
 """Simulated welding cell: an arm whose joints have springs, dampers, play and friction, on MuJoCo.
 
-Each axis is a hinge that a fixed tendon pulls towards the angle of its motor: stiff and damped beyond its play, free
-within it. The motors follow the programmed path exactly.
+Each axis is a hinge that a fixed tendon pulls towards the angle of its motor: a spring beyond its play and none within
+it, with a damper in both. The motors follow the programmed path exactly.
 """
 
 from __future__ import annotations
