@@ -140,6 +140,14 @@ def test_faults_name_the_line(lines: str, message: str) -> None:
     assert robot.planner.braking() == 0.0
 
 
+def test_a_range_that_is_almost_left_is_a_warning() -> None:
+    outcome, _, robot = drive("MoveAbsJ [[0,0,69.4,0,30,0],pA.extax], v1000, fine, tPen;")
+    assert outcome.reason == "end", outcome.message
+    (warning,) = robot.planner.warnings
+    assert warning.startswith("test.mod:")
+    assert warning.endswith("axis 3 comes within 0.6 deg of its range's end")
+
+
 def test_same_program_gives_the_same_bits() -> None:
     lines = "MoveL pB, v500, z10, tPen; MoveC Offs(pB,50,50,0), pC, v500, z5, tPen; MoveJ pA, v1000, fine, tPen;"
     first, second = (drive(lines, sampling=0.004)[2] for _ in range(2))

@@ -43,6 +43,7 @@ _TICK = 1e-9
 """Time below which there is none left [s]."""
 
 _MEETS = 1e-5
+_NEAR_RANGE = math.radians(2.0)
 _ROWS = ("s", "first", "second", "accelerations")
 
 
@@ -178,6 +179,7 @@ class Planner:
             return self._finish_at_point(movement)
         if movement.sampled is None:
             movement.sampled = sample_curve(self.arm, movement.tool, movement.curve, self.end_joints)
+        self._warn_of_ranges(movement)
         if not self._movements:
             movement.offset = self._length
             self._movements.append(movement)
@@ -186,6 +188,16 @@ class Planner:
             self._is_planned = False
             return True
         return self._append_behind(self._movements[-1], movement)
+
+    def _warn_of_ranges(self, movement: Movement) -> None:
+        """Warn where a movement comes close to the end of an axis's range."""
+        assert movement.sampled is not None
+        low, high = self.arm.limits.T
+        gaps = np.minimum(movement.sampled.joints - low, high - movement.sampled.joints).min(axis=0)
+        axis = int(gaps.argmin())
+        text = f"{movement.label}: axis {axis + 1} comes within {math.degrees(gaps[axis]):.1f} deg of its range's end"
+        if gaps[axis] < _NEAR_RANGE and text not in self.warnings:
+            self.warnings.append(text)
 
     def _finish_at_point(self, movement: Movement) -> bool:
         """Stop in the latest point where a movement to the same point asks for it."""
@@ -275,7 +287,7 @@ class Planner:
     # Time
 
     def advance(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance time."""
         self._plan()
         self.now += seconds
         if self._profile is None:

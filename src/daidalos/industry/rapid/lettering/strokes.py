@@ -114,7 +114,7 @@ class _FlatteningPen:
         self._points: list[Point] = []
 
     def moveTo(self, point: Point) -> None:
-        """Begin an outline."""
+        """Start an outline."""
         self._points = [self._placed(point)]
 
     def lineTo(self, point: Point) -> None:

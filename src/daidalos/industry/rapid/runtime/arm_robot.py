@@ -187,7 +187,7 @@ class ArmRobot:
         return self.planner.remaining()
 
     def advance(self, seconds: float) -> None:
-        """Let time pass, and keep samples."""
+        """Advance time, and keep samples."""
         if self._sampling > 0.0:
             self._keep(self.planner.now + seconds)
         self.planner.advance(seconds)

@@ -92,7 +92,7 @@ class Interrupts:
                 self._occur(number, one)
 
     def occur(self, number: float) -> None:
-        """Let an interrupt occur, unless it was disconnected meanwhile."""
+        """Trigger an interrupt, unless it was disconnected meanwhile."""
         if number in self._by_number:
             self._occur(number, self._by_number[number])
 

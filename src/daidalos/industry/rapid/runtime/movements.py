@@ -15,6 +15,9 @@ from daidalos.industry.rapid.runtime.robot import Event, MotionSettings, Move
 if TYPE_CHECKING:
     from daidalos.industry.rapid.runtime.task import Task
 
+MIN_SPEED = 1e-3
+"""Least speed of the tool [mm/s]."""
+
 FINE: list[Any] = [True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 
 
@@ -38,8 +41,8 @@ def order(
     if z is not None:
         zone = [False, z, z, z, *zone[4:]]
     speed = _scaled(task, speed if v is None else [v, *speed[1:]])
-    if speed[0] <= 0 and t is None:
-        raise RapidError("ERR_SPEEDLIM_VALUE", f"the speed is {speed[0]:g} mm/s")
+    if speed[0] < MIN_SPEED and t is None:
+        raise RapidError("ERR_SPEEDLIM_VALUE", f"the speed is {speed[0]:g} mm/s, and at least {MIN_SPEED:g} is needed")
     if len(target) != 2:
         target = _displaced(task, target)
         via = _displaced(task, via) if via is not None else None
@@ -191,19 +194,19 @@ def path_acc_lim(
 
 @routine("ConfL")
 def conf_l(task: Task, on_: Any = None, off_: Any = None) -> None:
-    """Say whether linear movements have to arrive with the target's configuration."""
+    """Set whether linear movements have to arrive with the target's configuration."""
     _set_motion(task, checks_line=not off_)
 
 
 @routine("ConfJ")
 def conf_j(task: Task, on_: Any = None, off_: Any = None) -> None:
-    """Say whether joint movements go to the target's configuration, or to the nearest."""
+    """Set whether joint movements go to the target's configuration, or to the nearest."""
     _set_motion(task, checks_joint=not off_)
 
 
 @routine("SingArea")
 def sing_area(task: Task, wrist_: Any = None, lockaxis4_: Any = None, off_: Any = None) -> None:
-    """Say whether the tool may turn to pass a singularity of the wrist."""
+    """Set whether the tool may turn to pass a singularity of the wrist."""
     if lockaxis4_:
         raise FatalError("SingArea \\LockAxis4 is for arms with five axes; use \\Wrist")
     _set_motion(task, turns_wrist=bool(wrist_))
@@ -219,7 +222,7 @@ def cir_path_mode(
     wrist46_: Any = None,
     wrist56_: Any = None,
 ) -> None:
-    """Say how the tool turns on a circle."""
+    """Set how the tool turns on a circle."""
     if wrist45_ or wrist46_ or wrist56_:
         raise FatalError("CirPathMode with wrist movements is for cutting tools; use \\ObjectFrame")
     _set_motion(task, circle="object" if objectframe_ else "point" if cirpointori_ else "path")

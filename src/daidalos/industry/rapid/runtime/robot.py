@@ -131,7 +131,7 @@ class Robot(Protocol):
         ...
 
     def advance(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance time."""
         ...
 
     def next_event(self) -> float | None:
@@ -216,7 +216,7 @@ class SimpleRobot:
         return math.inf if self._is_stopped and self._left > 0.0 else self._left
 
     def advance(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance time."""
         if not self._is_stopped:
             self._left = self._left - seconds if self._left - seconds > 1e-12 else 0.0
 

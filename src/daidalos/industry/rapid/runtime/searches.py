@@ -90,7 +90,7 @@ def _search(
 
 
 def _finish(task: Task, stops: bool, search: _Search) -> None:
-    """Let time pass until the robot stands, at the end of the way or where it was stopped."""
+    """Advance time until the robot stands, at the end of the way or where it was stopped."""
     while (left := task.robot.remaining()) > 0.0:
         if stops and search.hits:
             task.pass_time(task.robot.stop())

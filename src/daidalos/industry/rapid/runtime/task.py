@@ -190,7 +190,7 @@ class Task:
         self.interrupts.serve()
 
     def wait_for_robot(self, left: Callable[[], float]) -> None:
-        """Let time pass until a time that a robot says is over; while the robot is stopped, until a trap starts it.
+        """Advance time until a time that a robot says is over; while the robot is stopped, until a trap starts it.
 
         Raises
         ------
@@ -205,7 +205,7 @@ class Task:
             self.pass_time(seconds)
 
     def catch_up(self) -> None:
-        """Let time pass until instructions run that come behind the latest movement; a trap does not wait."""
+        """Advance time until instructions run that come behind the latest movement; a trap does not wait."""
         if not self.interrupts.is_serving:
             self.wait_for_robot(self.robot.lead)
 
