@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import site
 import sys
 import sysconfig
 from pathlib import Path
@@ -18,18 +19,23 @@ def python_start() -> str:
     WorkspaceError
         When this Python has no shared library.
     """
-    paths = [path for path in sys.path if path and ("site-packages" in path or "dist-packages" in path)]
+    # Not sys.path, to which a sourced workspace adds its own: then each workspace would have a library.
+    paths = site.getsitepackages()
+    if site.ENABLE_USER_SITE:
+        paths.append(site.getusersitepackages())
     lines = [
         str(_library()),
         sys.base_prefix,
         "import site, sys",
         f"sys.prefix = sys.exec_prefix = {sys.prefix!r}",
         f"sys.executable = {sys.executable!r}",
-        "standard = [path for path in sys.path if not path.endswith('-packages')]",
+        # The base's own packages give way to those of this environment; PYTHONPATH comes first, as ever.
+        "base = set(site.getsitepackages([sys.base_prefix]))",
+        "first = [path for path in sys.path if path not in base]",
         "sys.path[:] = []",
         f"for path in {paths!r}:",
         "    site.addsitedir(path)",
-        "sys.path[:] = standard + [path for path in sys.path if path not in standard]",
+        "sys.path[:] = first + [path for path in sys.path if path not in first]",
     ]
     return "\n".join(lines) + "\n"
 
