@@ -119,9 +119,8 @@ def run() -> dict[str, float]:
     """Measure everything."""
     with tempfile.TemporaryDirectory(prefix="dd") as text:
         folder = Path(text)
-        os.environ |= {
-            "XDG_RUNTIME_DIR": text, "ROS_DOMAIN_ID": str(60 + os.getpid() % 30), "DAIDALOS_CACHE": str(folder / "cache"),
-        }  # fmt: skip
+        os.environ |= {"XDG_RUNTIME_DIR": text, "ROS_DOMAIN_ID": str(60 + os.getpid() % 30)}
+        os.environ["DAIDALOS_CACHE"] = str(folder / "cache")
         write_package(folder / "talkers", {"talker": TALKER})
         first = build(folder)
         (folder / "talkers/src/talker.cpp").write_text(TALKER + "\n// changed\n")

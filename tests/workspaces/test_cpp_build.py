@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from . import packages
 from cpp_packages import need_compiler, share_library
 from daidalos.interfaces.codec import codec_of
 from terminals import Terminal, environment
+
+from . import packages
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(400)]
 
@@ -244,7 +245,7 @@ def test_a_message_cut_short_is_refused(workspace, cut):
     import test_msgs.msg
 
     data = codec_of(test_msgs.msg.Arrays, 2).encode(test_msgs.msg.Arrays())
-    with pytest.raises(ValueError, match="too early|no header|larger than"):
+    with pytest.raises(ValueError, match=r"too early|no header|larger than"):
         recode(workspace, "Arrays", data[:cut])
 
 

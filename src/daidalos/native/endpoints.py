@@ -22,7 +22,7 @@ from daidalos.interfaces.codec import Codec, codec_of
 from daidalos.transport.backend import RequestId
 
 BATCH = 64
-"""Messages that are taken at a time; the library's constant of this name is the same."""
+"""Messages that are taken at a time."""
 
 
 def profile(values: list[int]) -> QoSProfile:

@@ -16,9 +16,6 @@ namespace
 using daidalos::List;
 using daidalos::Value;
 
-/// Messages that the Python side returns at a time.
-constexpr std::size_t kBatch = 64;
-
 Value qos_value(const QoS & qos)
 {
   const auto & profile = qos.get_rmw_qos_profile();
@@ -116,7 +113,6 @@ bool SubscriptionBase::take_bytes(daidalos::Bytes & data, MessageInfo & info, bo
 {
   std::lock_guard<std::mutex> lock(mutex_);
   if (samples_.empty() && subscription_) {
-    full_batch_ = false;
     Value taken = daidalos::call(subscription_, "take");
     for (auto & item : std::get<List>(taken)) {
       auto & fields = std::get<List>(item);
@@ -130,7 +126,6 @@ bool SubscriptionBase::take_bytes(daidalos::Bytes & data, MessageInfo & info, bo
       std::copy_n(gid.begin(), std::min<std::size_t>(gid.size(), 16), known.publisher_gid.data);
       samples_.push_back(std::move(sample));
     }
-    full_batch_ = samples_.size() == kBatch;
   }
   if (samples_.empty()) {
     more = false;
@@ -139,7 +134,8 @@ bool SubscriptionBase::take_bytes(daidalos::Bytes & data, MessageInfo & info, bo
   data = std::move(samples_.front().data);
   info = samples_.front().info;
   samples_.pop_front();
-  more = !samples_.empty() || full_batch_;
+  // Only a take that finds nothing ends it: a wake that came during an earlier take is spent by then.
+  more = true;
   return true;
 }
 

@@ -55,7 +55,6 @@ private:
   daidalos::Object subscription_;
   std::mutex mutex_;
   std::deque<Sample> samples_;
-  bool full_batch_ = false;
 };
 
 template<typename MessageT, typename Allocator = std::allocator<void>>
