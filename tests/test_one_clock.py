@@ -22,6 +22,7 @@ ALLOWED = {
     "industry/lighting/device.py": "how long a broker is lost, and how often the state is published",
     "industry/lighting/embedded_broker.py": "one turn of an event loop at its end",
     "industry/lighting/engine.py": "the pace of DMX frames, which lamps expect in real time",
+    "industry/welding/rapid_paths.py": "the computing time of a program that may be endless",
     "navigation/planners/search.py": "the computing time of a search, which max_planning_time limits",
     "nodes/asset_folders.py": "the age of a file",
     "nodes/daidalos_demo/_measuring.py": "the computing time of other processes",
