@@ -55,7 +55,7 @@ class Role:
 
     @contextmanager
     def own(self) -> Iterator[None]:
-        """Have the task; wait for it first."""
+        """Hold the task for a ``with`` block, after a wait for whoever has it."""
         with self._taken:
             self._is_urgent = False
             yield
