@@ -25,7 +25,8 @@ from . import packages
         ("python3-yaml", Answer.HERE, "pyyaml"),
         ("python3-no-such-thing", Answer.PYTHON, "no-such-thing"),
         ("python3-no-such-thing-pip", Answer.PYTHON, "no-such-thing"),
-        ("rclcpp", Answer.COMPILED, ""),
+        ("rclcpp", Answer.HERE, ""),
+        ("rclcpp_action", Answer.COMPILED, ""),
         ("libopencv-dev", Answer.COMPILED, ""),
         ("urdf", Answer.COMPILED, ""),
         ("gazebo_plugins", Answer.HERE, ""),
@@ -59,7 +60,7 @@ def test_keys(key, answer, distribution):
 def source(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     packages.python_package(tmp_path / "src", "one", {}, needs="rclpy two")
-    packages.python_package(tmp_path / "src", "two", {}, needs="rclcpp python3-no-such-thing")
+    packages.python_package(tmp_path / "src", "two", {}, needs="pluginlib python3-no-such-thing")
     packages.python_package(tmp_path / "src" / "hidden", "three", {}, needs="nothing_known")
     (tmp_path / "src" / "hidden" / "COLCON_IGNORE").write_text("")
     return tmp_path / "src"
@@ -67,7 +68,7 @@ def source(tmp_path, monkeypatch):
 
 def test_keys_of_packages(source, capsys):
     assert rosdep.main(["keys", "--from-paths", "src", "--ignore-src"]) == 0
-    assert capsys.readouterr().out.split() == ["python3-no-such-thing", "python3-pytest", "rclcpp", "rclpy"]
+    assert capsys.readouterr().out.split() == ["pluginlib", "python3-no-such-thing", "python3-pytest", "rclpy"]
 
 
 def test_one_package_is_enough(source, capsys):
@@ -86,14 +87,18 @@ def test_what_is_missing_is_told_and_would_be_installed(source, capsys):
 
 def test_all_that_is_there_is_well(source, capsys):
     assert (
-        rosdep.main(["install", "-i", "--from-path", "src", "-y", "--skip-keys", "python3-no-such-thing rclcpp"]) == 0
+        rosdep.main(["install", "-i", "--from-path", "src", "-y", "--skip-keys", "python3-no-such-thing pluginlib"])
+        == 0
     )
     assert capsys.readouterr().out == "#All required rosdeps installed successfully\n"
 
 
 def test_what_only_cpp_needs_is_said(source, capsys):
     assert rosdep.main(["install", "-i", "--from-path", "src", "-y", "--skip-keys", "python3-no-such-thing"]) == 0
-    assert capsys.readouterr().out.splitlines()[0] == "#Only C++ needs rclcpp: it is left out of a build here"
+    assert (
+        capsys.readouterr().out.splitlines()[0]
+        == "#Only C++ needs pluginlib: targets that do are left out of a build here"
+    )
 
 
 def test_packages_of_ros_2_that_are_not_here_are_named_and_stop_nothing(tmp_path, monkeypatch, capsys):

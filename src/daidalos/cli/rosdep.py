@@ -128,7 +128,7 @@ def _report_left_out(needs: Sequence[PackageDependencies]) -> None:
     """Print which dependencies are not here although nothing has to be installed for a build."""
     keys = {answer: [key for key in _all_keys(needs) if resolve(key).answer is answer] for answer in Answer}
     if keys[Answer.COMPILED]:
-        print(f"#Only C++ needs {', '.join(keys[Answer.COMPILED])}: it is left out of a build here")
+        print(f"#Only C++ needs {', '.join(keys[Answer.COMPILED])}: targets that do are left out of a build here")
     if keys[Answer.ABSENT]:
         print(f"#These packages of ROS 2 do not come with Daidalos: {', '.join(keys[Answer.ABSENT])}")
 
@@ -150,7 +150,7 @@ def _resolve(args: argparse.Namespace) -> int:
 
 def _words(resolution: Resolution) -> str:
     words = {
-        Answer.COMPILED: "# left out of a build: only C++ needs it",
+        Answer.COMPILED: "# does not come with Daidalos; C++ targets that need it are left out of a build",
         Answer.ABSENT: "# does not come with Daidalos; a build does not need it",
     }
     return words.get(resolution.answer, "# comes with Daidalos")

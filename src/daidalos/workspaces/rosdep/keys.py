@@ -17,10 +17,10 @@ _BUILD = re.compile(
     r"launch_testing_.*|rosbag2.*|domain_coordinator|osrf_.*|python3(-dev)?|python3-setuptools.*|python3-catkin-pkg.*|"
     r"message_(generation|runtime)|ros(bag|launch|lib|msg|node|param|service|test|topic|unit)|"
     r"(common_interfaces|desktop|geometry2|image_common|navigation2|perception|rqt_common_plugins|simulation|sros2)|"
-    r"tf2_ros_py|plotjuggler_ros|ros2(multicast|plugin)|bond_core"
+    r"rclcpp|tf2_ros_py|plotjuggler_ros|ros2(multicast|plugin)|bond_core"
 )
 _COMPILED = re.compile(
-    r"rclcpp.*|pluginlib|class_loader|rcl|rcl_.*|rcutils|rcpputils|libstatistics_collector|eigen3?|eigen3_cmake_module|"
+    r"rclcpp_.*|pluginlib|class_loader|rcl|rcl_.*|rcutils|rcpputils|libstatistics_collector|eigen3?|eigen3_cmake_module|"
     r"roscpp.*|nodelet.*|urdf|boost|lib[a-z].*|qt.*|pcl.*|tf2|tf2_(bullet|eigen|kdl)|kdl.*|orocos_kdl.*|urdfdom.*|"
     r"(compressed_|theora_)?image_transport(_plugins)?|console_bridge.*|spdlog.*|tinyxml.*|yaml[-_]cpp.*|"
     r"rviz_(common|rendering|ogre_vendor|default_plugins|visual_tools)|gtest|"
@@ -78,7 +78,7 @@ class Answer(Enum):
     HERE = "here"
     """Installed, or not needed by a build."""
     COMPILED = "compiled"
-    """Only C++ needs it, which is left out of a build."""
+    """Only C++ needs it; targets that do are left out of a build."""
     ABSENT = "absent"
     """A package of ROS 2 that does not come with Daidalos; a build does not need it."""
     PYTHON = "python"
