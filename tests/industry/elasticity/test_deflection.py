@@ -122,12 +122,12 @@ def test_backlash_has_hysteresis_at_the_change_of_sign():
 def test_flanks_are_those_of_a_play_operator_step_by_step(torques, hold):
     column = np.array(torques)[:, None] * np.ones(6)
     beyond = [value for value in torques if abs(value) > hold]
-    side = np.sign(beyond[0]) if beyond else None
+    side = np.sign(beyond[0]) if beyond else -1.0 if column.sum(axis=0)[0] < 0.0 else 1.0
     expected = []
     for value in torques:
         if abs(value) > hold:
             side = np.sign(value)
-        expected.append(side if side is not None else (-1.0 if value < 0 else 1.0))
+        expected.append(side)
     np.testing.assert_array_equal(flanks(column, np.full(6, hold))[:, 0], expected)
 
 

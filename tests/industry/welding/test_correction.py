@@ -46,6 +46,18 @@ def test_it_converges_below_a_micrometre_in_few_iterations():
     assert distances == sorted(distances, reverse=True)
 
 
+@pytest.mark.parametrize("direction", [-1.0, 1.0])
+def test_it_converges_where_torques_are_nearly_zero(direction):
+    """Check seams towards the robot's middle plane under a force through the wrist, on which flanks are undecided."""
+    steps = np.arange(60)[:, None] * [0.01, direction * 0.005, 0.0]
+    seam = Seam(np.array([1.8, -direction * 0.3, 0.6]) + steps, np.tile([0.0, 0.0, 1.0], (60, 1)))
+    wrench = np.tile([0.0, 0.0, 8000.0, 0.0, 0.0, 0.0], (60, 1))
+    done = correct(cell(), tool_poses(seam), wrench, SPEED)
+    assert done.convergence[-1][0] < 1e-6
+    assert np.linalg.norm(done.after.poses[:, :3, 3] - done.desired[:, :3, 3], axis=1).max() < 1e-5
+    assert (np.diff(done.after.sides[:, 3:], axis=0) == 0.0).all()
+
+
 def test_the_loaded_tool_runs_on_the_desired_path():
     desired = tool_poses(arc())
     done = correct(cell(), desired, wrenches(400), SPEED)

@@ -81,16 +81,21 @@ def flanks(torques: NDArray[np.float64], hold: NDArray[np.float64]) -> NDArray[n
 
     A transmission goes over to the other flank where the sign of its torque (n, 6) has changed and the torque exceeds
     `hold` (6,), the friction that keeps the link where it is [Nm]. Before the first torque above `hold` it lies where
-    that torque puts it.
+    that torque puts it, and where there is none, where the mean torque does.
     """
-    sides = np.where(np.abs(torques) > hold, np.sign(torques), 0.0)
-    count = len(sides)
-    at = np.where(sides != 0.0, np.arange(count)[:, None], -1)
+    known = continued(np.where(np.abs(torques) > hold, np.sign(torques), 0.0))
+    return np.where(known == 0.0, np.where(torques.sum(axis=0) < 0.0, -1.0, 1.0), known)
+
+
+def continued(sides: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return flanks along a path (n, 6) with zeros replaced by the flank before them, at first by the one after them.
+
+    The zeros of an axis that has no others are kept.
+    """
+    at = np.where(sides != 0.0, np.arange(len(sides))[:, None], -1)
     np.maximum.accumulate(at, axis=0, out=at)
     first = np.argmax(sides != 0.0, axis=0)
-    at = np.where(at < 0, first[None, :], at)
-    out = np.take_along_axis(sides, at, axis=0)
-    return np.where(out == 0.0, np.where(torques < 0.0, -1.0, 1.0), out)
+    return np.take_along_axis(sides, np.where(at < 0, first[None, :], at), axis=0)
 
 
 def windings(
@@ -176,6 +181,7 @@ def load(
     speeds: NDArray[np.float64],
     options: Options,
     tolerance: float = 1e-10,
+    sides: NDArray[np.float64] | None = None,
 ) -> Loaded:
     """Compute where a loaded arm is in equilibrium, for motor angles along a path.
 
@@ -195,6 +201,8 @@ def load(
         What counts.
     tolerance : float
         Change of an angle at which the iteration ends [rad].
+    sides : array of shape (n, 6), optional
+        Signs of the flanks on which the transmissions lie; where they are not given, the torques decide.
 
     Raises
     ------
@@ -202,15 +210,12 @@ def load(
         Where the arm is too soft for the load: a transmission is wound beyond `MAX_WINDING`, or nothing balances it.
     """
     joints = np.array(motors, dtype=np.float64)
-    sides: NDArray[np.float64] | None = None
+    held = sides
     for iteration in range(MAX_ITERATIONS):
-        poses = forward(arm, joints) @ tool
-        rotations = poses[:, :3, :3]
-        turned = np.concatenate(
-            [np.einsum("nij,nj->ni", rotations, wrenches[:, part]) for part in (slice(3), slice(3, 6))], axis=1
-        )
-        torques = transmission_torques(arm, elasticity, joints, poses[:, :3, 3], turned, speeds, options)
-        wound, sides = windings(elasticity, torques, options, sides if iteration > SETTLING_ITERATIONS else None)
+        poses, torques = _under_load(arm, elasticity, joints, tool, wrenches, speeds, options)
+        earlier, (wound, sides) = sides, windings(elasticity, torques, options, held)
+        if held is None and iteration == SETTLING_ITERATIONS:
+            held = continued(np.where(sides == earlier, sides, 0.0))
         if np.abs(wound).max(initial=0.0) > MAX_WINDING:
             point, axis = (int(one) for one in np.unravel_index(np.abs(wound).argmax(), wound.shape))
             raise ValueError(f"point {point}: the load winds axis {axis + 1} by more than {MAX_WINDING:g} rad")
@@ -220,3 +225,35 @@ def load(
         joints += change
     worst = int(np.abs(change).max(axis=1).argmax())
     raise ValueError(f"point {worst}: no equilibrium under this load within {MAX_ITERATIONS} iterations")
+
+
+def flanks_at(
+    arm: Arm,
+    elasticity: Elasticity,
+    joints: NDArray[np.float64],
+    tool: NDArray[np.float64],
+    wrenches: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    options: Options,
+) -> NDArray[np.float64]:
+    """Return the flanks (n, 6) where the links, and not the motors, are at angles (n, 6); see `load` and `flanks`."""
+    _, torques = _under_load(arm, elasticity, joints, tool, wrenches, speeds, options)
+    return flanks(torques, elasticity.coulomb_friction)
+
+
+def _under_load(
+    arm: Arm,
+    elasticity: Elasticity,
+    joints: NDArray[np.float64],
+    tool: NDArray[np.float64],
+    wrenches: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    options: Options,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the poses of the tool (n, 4, 4) and the torques of the transmissions (n, 6) for angles of the links."""
+    poses = forward(arm, joints) @ tool
+    rotations = poses[:, :3, :3]
+    turned = np.concatenate(
+        [np.einsum("nij,nj->ni", rotations, wrenches[:, part]) for part in (slice(3), slice(3, 6))], axis=1
+    )
+    return poses, transmission_torques(arm, elasticity, joints, poses[:, :3, 3], turned, speeds, options)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.errors import UserError
-from daidalos.industry.elasticity.deflection import Loaded, Options, load
+from daidalos.industry.elasticity.deflection import Loaded, Options, flanks_at, load
 from daidalos.industry.elasticity.elasticity import Elasticity
 from daidalos.industry.motion.kinematics import inverse
 from daidalos.industry.robots.arm import Arm
@@ -82,8 +82,8 @@ def correct(
     """Compute the programmed path by fixed-point iteration.
 
     Each iteration loads the arm on the programmed path and moves every programmed pose by what the loaded tool is away
-    from the desired one. The result is smoothed by B-splines, which are parted where a transmission changes its flank
-    or friction its direction.
+    from the desired one; transmissions lie on the flanks on which they do once the tool is there. The result is
+    smoothed by B-splines, which are parted where a transmission changes its flank or friction its direction.
 
     Parameters
     ----------
@@ -110,28 +110,28 @@ def correct(
     check_speeds(cell.arm, speeds, title)
     programmed, motors = desired, joints
     convergence = []
-    before = None
+    before = loaded = _load(cell, motors, wrenches, speeds, title)
+    # Where a torque is nearly zero, the correction for one flank could bring the transmission onto the other, and back.
+    sides = flanks_at(cell.arm, cell.elasticity, joints, cell.tool, wrenches, speeds, cell.options)
     for _ in range(MAX_ITERATIONS):
-        loaded = _load(cell, motors, wrenches, speeds, title)
-        before = before if before is not None else loaded
         away, turned = pose_errors(desired, loaded.poses)
         convergence.append((float(np.linalg.norm(away, axis=1).max()), float(np.linalg.norm(turned, axis=1).max())))
         if max(convergence[-1]) < TOLERANCE:
             break
         programmed = moved(programmed, away, turned)
         motors = _follow(cell.arm, programmed @ flange, branch, motors, title)
+        loaded = _load(cell, motors, wrenches, speeds, title, sides)
     else:
         raise UserError(
             f"{title}: the correction does not converge: {1e3 * convergence[-1][0]:.4f} mm are left after "
             f"{MAX_ITERATIONS} iterations"
         )
-    assert before is not None
     breaks = _changes(loaded.sides)
     if cell.options.friction:
         breaks += _changes(np.sign(speeds))
     spline = fit_path(distances, programmed, breaks)
     motors = _follow(cell.arm, spline.poses @ flange, branch, motors, title)
-    after = _load(cell, motors, wrenches, speeds, title)
+    after = _load(cell, motors, wrenches, speeds, title, sides)
     return Correction(desired, spline.poses, before, after, distances, motors, branch, tuple(convergence), spline)
 
 
@@ -174,10 +174,15 @@ def in_axes(axes: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[
 
 
 def _load(
-    cell: Cell, motors: NDArray[np.float64], wrenches: NDArray[np.float64], speeds: NDArray[np.float64], title: str
+    cell: Cell,
+    motors: NDArray[np.float64],
+    wrenches: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    title: str,
+    sides: NDArray[np.float64] | None = None,
 ) -> Loaded:
     try:
-        return load(cell.arm, cell.elasticity, motors, cell.tool, wrenches, speeds, cell.options)
+        return load(cell.arm, cell.elasticity, motors, cell.tool, wrenches, speeds, cell.options, sides=sides)
     except ValueError as error:
         raise UserError(f"{title}: {error}") from None
 
