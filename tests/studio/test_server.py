@@ -504,6 +504,24 @@ def test_without_a_built_page_a_plain_one_tells_how_to_get_it(server):
     asyncio.run(run())
 
 
+def test_serves_what_is_only_there_compressed(server, tmp_path):
+    (tmp_path / "static" / "assets").mkdir(parents=True)
+    (tmp_path / "static" / "index.html").write_bytes(b"<!doctype html>")
+    (tmp_path / "static" / "assets" / "large-abc.js.gz").write_bytes(gzip.compress(b"let a = 1;"))
+
+    async def run():
+        for accepted, unpacked in (("gzip, deflate", gzip.decompress), ("identity", bytes)):
+            response, body = await get(server, "/assets/large-abc.js", **{"Accept-Encoding": accepted})
+            assert (response.status, response.content_type) == (200, "text/javascript")
+            assert "immutable" in response.headers["Cache-Control"]
+            assert "default-src" in response.headers["Content-Security-Policy"]
+            assert unpacked(body) == b"let a = 1;"
+        response, _ = await get(server, "/assets/large-abc.js.gz")
+        assert response.status == 404
+
+    asyncio.run(run())
+
+
 def test_serves_the_built_page(server, tmp_path):
     static = tmp_path / "static"
     (static / "assets").mkdir(parents=True)

@@ -23,7 +23,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from daidalos.studio import typescript
-from daidalos.studio.files import BUILT_IN_EXTENSIONS, STATIC
+from daidalos.studio.files import BUILT_IN_EXTENSIONS, GZIP, STATIC
 
 STUDIO = Path(__file__).resolve().parent
 WEB = STUDIO / "web"
@@ -33,6 +33,8 @@ SKIP = "DAIDALOS_SKIP_STUDIO"  # environment variable: set it to leave the page 
 
 NPM_TIMEOUT_S = 600
 VITE_TIMEOUT_S = 300
+LARGE = 100_000
+"""Size above which only the compressed form of a file of the page is kept [bytes]."""
 COMPRESSED = frozenset({".css", ".html", ".js", ".json", ".svg"})
 _NOT_SOURCES = frozenset({"node_modules", "interop"})
 
@@ -228,10 +230,12 @@ def _build_into(static: Path, web: Path, node: _Node) -> None:
 
 
 def _compress(folder: Path) -> None:
-    """Write a compressed copy beside each text file; the server sends it to browsers that accept it."""
+    """Write a compressed copy beside each text file, in place of large ones; browsers that accept it get it."""
     for path in [path for path in folder.rglob("*") if path.suffix in COMPRESSED]:
         content = path.read_bytes()
-        path.with_name(path.name + ".gz").write_bytes(gzip.compress(content, 9, mtime=0))
+        path.with_name(path.name + GZIP).write_bytes(gzip.compress(content, 9, mtime=0))
+        if len(content) > LARGE and path.parent.name == "assets":
+            path.unlink()
 
 
 def _run(command: Sequence[str], web: Path, node: _Node, timeout: float) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 from pathlib import Path
 
 from aiohttp import web
 
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.extensions import module_file, page_modules
-from daidalos.studio.files import CONTENT_TYPES, find_file
+from daidalos.studio.files import CONTENT_TYPES, GZIP, find_file
 from daidalos.studio.records import to_json
 
 HEADERS = {
@@ -52,9 +53,22 @@ async def page(request: web.Request) -> web.StreamResponse:
         return web.Response(text=NOT_BUILT, content_type="text/html", headers={"Cache-Control": "no-store"})
     path = find_file(static, request.path)
     if path is None:
-        return _missing(request)
+        packed = find_file(static, request.path, GZIP)
+        return _missing(request) if packed is None else await _unpacked(request, packed)
     # Vite puts a hash of the content into the names below assets/.
     return _file_response(path, FOREVER if path.parent.name == "assets" else ASK_FIRST)
+
+
+async def _unpacked(request: web.Request, path: Path) -> web.Response:
+    """Return a file of which the server has only the compressed form, as it is where the browser accepts that."""
+    content = await asyncio.to_thread(path.read_bytes)
+    headers = {**HEADERS, "Cache-Control": FOREVER, "Vary": "Accept-Encoding"}
+    if "gzip" in request.headers.get("Accept-Encoding", ""):
+        headers["Content-Encoding"] = "gzip"
+    else:
+        content = await asyncio.to_thread(gzip.decompress, content)
+    kind = CONTENT_TYPES[path.with_suffix("").suffix]
+    return web.Response(body=content, content_type=kind, charset="utf-8", headers=headers)
 
 
 async def extension_module(request: web.Request) -> web.StreamResponse:
