@@ -90,10 +90,8 @@ def _write(path: Path, text: str) -> Path:
 
 def _init_source(package: str, kind: str, members: list[Interface]) -> str:
     """Return an ``__init__`` that imports each module on first access to its class."""
-    modules = {}
-    for member in members:
-        for name in _exports(member):
-            modules[name] = module_name(short_name(member.name))
+    exports = {module_name(short_name(member.name)): list(_exports(member)) for member in members}
+    modules = {name: module for module, names in exports.items() for name in names}
     lines = [
         f'"""The {kind} interfaces of {package}, imported when they are used."""',
         "",
@@ -101,7 +99,7 @@ def _init_source(package: str, kind: str, members: list[Interface]) -> str:
         "from typing import TYPE_CHECKING as _TYPE_CHECKING",
         "",
         "if _TYPE_CHECKING:",
-        *(f"    from {package}.{kind}.{module} import {name} as {name}" for name, module in modules.items()),
+        *(f"    from .{module} import {', '.join(names)}" for module, names in exports.items()),
         "",
         "_MODULES = {",
         *(f"    {name!r}: {module!r}," for name, module in modules.items()),
