@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from filelock import FileLock
 
+from artnet_port import artnet_port
 from browser.cdp import Chromium
 from daidalos.industry.lighting import artnet
 from daidalos.industry.lighting.configuration import DEFAULT, Configuration, read_configuration
@@ -32,7 +32,6 @@ from daidalos.industry.lighting.mqtt_service import MqttService
 from daidalos.industry.lighting.show import Show
 from daidalos.interfaces.library import BUILT_IN
 from mqtt_brokers import free_port, mosquitto
-from places import MACHINE_TEMPORARY
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(180)]
 
@@ -69,7 +68,7 @@ class Ola:
         program = shutil.which("olad")
         if not program:
             pytest.skip("there is no olad; install the package ola")
-        self._stack, self._http = ExitStack(), free_port()
+        self._http = free_port()
         settings = folder / "ola"
         settings.mkdir()
         for name in _OTHER_PLUGINS:
@@ -85,7 +84,13 @@ class Ola:
         self._words, self._environment = [*words, "--no-register-with-dns-sd"], {**os.environ, "HOME": str(settings)}
 
     def __enter__(self) -> Ola:
-        self._stack.enter_context(FileLock(MACHINE_TEMPORARY / "daidalos-tests-artnet.lock"))
+        with ExitStack() as stack:
+            stack.enter_context(artnet_port())
+            self._start()
+            self._stack = stack.pop_all()
+        return self
+
+    def _start(self) -> None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             try:
                 probe.bind(("", artnet.PORT))
@@ -94,9 +99,13 @@ class Ola:
         self._process = subprocess.Popen(
             self._words, env=self._environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
-        until(lambda: "1-I-0" in json.dumps(self._ask("/json/get_ports")), self._process)
-        self._ask("/new_universe", id="1", name="one", add_ports="1-I-0")
-        return self
+        try:
+            until(lambda: "1-I-0" in json.dumps(self._ask("/json/get_ports")), self._process)
+            self._ask("/new_universe", id="1", name="one", add_ports="1-I-0")
+        except BaseException:
+            self._process.kill()
+            self._process.wait()
+            raise
 
     def __exit__(self, *error: object) -> None:
         self._process.terminate()

@@ -17,6 +17,7 @@ from tf2_py import TransformException
 from tf2_ros import Buffer, TransformListener
 from visualization_msgs.msg import MarkerArray
 
+from artnet_port import artnet_port
 from daidalos.common.pose3 import Pose
 from end_to_end.processes import DAIDALOS, Command
 
@@ -75,7 +76,7 @@ def test_the_spot_lies_on_the_part(domain: int) -> None:
         probe.bind(("127.0.0.1", 0))
         artnet = str(probe.getsockname()[1])
     words = (*DAIDALOS, "light", "demo", "--no-browser", "--port", str(_PORT), "--artnet-port", artnet)
-    with Command(*words, domain=domain) as demo:
+    with artnet_port(), Command(*words, domain=domain) as demo:
         demo.wait_for_line("studio: http://")
         rclpy.init(domain_id=domain)
         watcher = Watcher(rclpy.create_node("watcher"))
