@@ -23,7 +23,7 @@ _DESCRIPTIONS = {
     "extensions": "List what can be extended, and the extensions that are there",
     "light": "Point a moving head at places of a work cell",
     "map": "Build a map from the log of a robot",
-    "rapid": "Check, format and run programs of ABB robots",
+    "rapid": "Check, format, run, trace and write programs of ABB robots",
     "scenario": "Run scenarios in lock-step, and look at those that failed",
     "sim": "Simulate a world",
     "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",

@@ -1,4 +1,4 @@
-// Head calibration: guides through the calibration of a moving head, as the node head_calibration asks.
+// Calibration: guides through the calibration of a moving head, as the node head_calibration asks.
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Studio } from "../app/studio";
