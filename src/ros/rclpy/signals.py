@@ -81,6 +81,8 @@ def watch_context(context: Context) -> None:
 
 _REPEAT_INTERVAL_S = 0.5
 _last_signal_s = -math.inf
+_IMPORT_S = 1.0
+"""Time after a signal in which an import that fails has failed because of it."""
 
 _IMPORT_MACHINERY = "<frozen importlib._bootstrap>"
 _DEFERRAL_S = 0.01
@@ -146,11 +148,15 @@ def _quiet_thread_excepthook(arguments: threading.ExceptHookArgs) -> None:
 def is_orderly(error: BaseException) -> bool:
     """Return whether an exception only ends the program.
 
-    An interrupt while a compiled module is being imported arrives as the cause of an ImportError.
+    An interrupt while a compiled module is being imported arrives as the cause of an ImportError, or is lost in one.
     """
     if isinstance(error, (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException)):
         return True
-    return isinstance(error, ImportError) and error.__cause__ is not None and is_orderly(error.__cause__)
+    if not isinstance(error, ImportError):
+        return False
+    return time.monotonic() - _last_signal_s < _IMPORT_S or (
+        error.__cause__ is not None and is_orderly(error.__cause__)
+    )
 
 
 class SignalHandlerGuardCondition(GuardCondition):

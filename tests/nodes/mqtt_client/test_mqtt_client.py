@@ -142,7 +142,7 @@ def test_single_values_change_their_type(site: Callable[..., Site]) -> None:
     one = site(**bridged(**{f"{_OUT}./ping.primitive": True, f"{_IN}.pingpong.primitive": True}))
     sender = one.node.create_publisher(Int32, "/ping", 10)
     numbers = one.hear(Int32, "/pong")
-    one.until(lambda: numbers, lambda: sender.publish(Int32(data=42)))
+    one.until(lambda: numbers and one.heard, lambda: sender.publish(Int32(data=42)))
     assert numbers[0].data == 42
     assert ("pingpong", b"42") in [(topic, payload) for topic, payload, _ in one.heard]
     texts = one.hear(String, "/pong")
