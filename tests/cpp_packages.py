@@ -18,7 +18,7 @@ def need_compiler() -> None:
 
 
 def share_library(home: Path) -> None:
-    """Let builds below a home folder use the library that was built before, or build it for all tests that follow."""
+    """Provide builds below a home folder with an earlier library, or build it for the tests that follow."""
     folder = cache_folder() / "cpp"
     folder.mkdir(parents=True, exist_ok=True)
     own = home / ".cache" / "daidalos"

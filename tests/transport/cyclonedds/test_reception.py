@@ -1,15 +1,19 @@
-"""The pace of work that grows with what is known of the domain."""
+"""The receiving thread's end, and the pace of work that grows with what is known of the domain."""
 
 from __future__ import annotations
 
+import threading
 import time
 
 import pytest
 
 pytest.importorskip("cyclonedds")
 
-from daidalos.transport.cyclonedds.library import INFINITE
-from daidalos.transport.cyclonedds.reception import Paced
+from daidalos.transport.cyclonedds.library import INFINITE, load
+from daidalos.transport.cyclonedds.reception import Paced, Reception
+from daidalos.transport.environment import Environment
+from daidalos.transport.session import Session
+from daidalos.transport.shared import make_backend
 
 
 def test_work_that_takes_long_waits_in_proportion_and_is_done_once():
@@ -34,6 +38,19 @@ def test_work_that_takes_long_waits_in_proportion_and_is_done_once():
     assert paced.run() == INFINITE
     assert len(done) == 2
     assert done[1] - done[0] >= 90_000_000
+
+
+def test_the_thread_ends_with_its_participant(domain: int):
+    session = Session(make_backend(Environment(domain, middleware="rmw_cyclonedds_cpp")))
+    library = load()
+    participant = library.check(library.dds_create_participant(domain, None, None), "join the domain")
+    reception = Reception(library, participant, "tested")
+    thread = next(one for one in threading.enumerate() if one.name == "tested")
+    library.dds_delete(participant)
+    thread.join(10.0)
+    assert not thread.is_alive()
+    assert not reception.enter()
+    session.close()
 
 
 def test_what_is_requested_during_the_work_is_done_again():

@@ -72,7 +72,7 @@ def test_the_own_thread_goes_on_when_the_visitor_stays_away(owner: _Owner):
     owner.go_on.release()
     for _ in range(3):  # after visits that follow one another as well
         with _visit(owner.role):
-            """Be there for a moment."""
+            """Enter and leave at once."""
     assert owner.turns.acquire(timeout=_TIMEOUT_S)
 
 

@@ -128,6 +128,8 @@ class Reception:
     def wait(self, timeout_ns: int) -> Sequence[int]:
         """Wait until something comes or `wake` is called, between `enter` and `leave`; return it for `handle`."""
         count = self._library.dds_waitset_wait(self._waitset, self._ready, _BATCH, timeout_ns)
+        if count < 0:  # the participant was deleted: waiting again would return at once, for ever
+            self._closed = True
         return self._ready[:count] if count > 0 else ()
 
     def handle(self, numbers: Sequence[int]) -> None:
