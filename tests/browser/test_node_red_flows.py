@@ -12,6 +12,7 @@ import os
 import shutil
 import socket
 import subprocess
+import tempfile
 import time
 import urllib.parse
 import urllib.request
@@ -32,11 +33,13 @@ from daidalos.industry.lighting.mqtt_service import MqttService
 from daidalos.industry.lighting.show import Show
 from daidalos.interfaces.library import BUILT_IN
 from mqtt_brokers import free_port, mosquitto
+from places import MACHINE_TEMPORARY
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(180)]
 
 WINDOW = (700, 1000)
 PATIENCE_S = 40.0
+NOBODY = 65534
 _OTHER_PLUGINS = [
     "dummy",
     "e131",
@@ -64,40 +67,41 @@ _OTHER_PLUGINS = [
 class Ola:
     """The Open Lighting Architecture as a receiver of Art-Net, within a ``with`` block."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self) -> None:
         program = shutil.which("olad")
         if not program:
             pytest.skip("there is no olad; install the package ola")
-        self._http = free_port()
-        settings = folder / "ola"
-        settings.mkdir()
-        for name in _OTHER_PLUGINS:
-            (settings / f"ola-{name}.conf").write_text("enabled = false\n")
-        (settings / "ola-artnet.conf").write_text(
-            "enabled = true\nip = 127.0.0.1\nuse_loopback = true\noutput_ports = 0\n"
-        )
-        words = [program, "-c", str(settings), "-p", str(self._http), "-r", str(free_port())]
-        if os.getuid() == 0:  # it refuses to run as root
-            for one in (folder, *folder.parents[:2], settings, *settings.iterdir()):
-                one.chmod(0o777)
-            words = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", *words]
-        self._words, self._environment = [*words, "--no-register-with-dns-sd"], {**os.environ, "HOME": str(settings)}
+        self._program, self._http = program, free_port()
 
     def __enter__(self) -> Ola:
         with ExitStack() as stack:
             stack.enter_context(artnet_port())
-            self._start()
+            # Not below pytest's folder, which nobody but its owner may enter.
+            self._start(Path(stack.enter_context(tempfile.TemporaryDirectory(dir=MACHINE_TEMPORARY))))
             self._stack = stack.pop_all()
         return self
 
-    def _start(self) -> None:
+    def _start(self, settings: Path) -> None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             try:
                 probe.bind(("", artnet.PORT))
             except OSError:
                 pytest.skip("another program receives Art-Net here, and OLA takes no other port")
+        for name in _OTHER_PLUGINS:
+            (settings / f"ola-{name}.conf").write_text("enabled = false\n")
+        (settings / "ola-artnet.conf").write_text(
+            "enabled = true\nip = 127.0.0.1\nuse_loopback = true\noutput_ports = 0\n"
+        )
+        words = [self._program, "-c", str(settings), "-p", str(self._http), "-r", str(free_port())]
+        if os.getuid() == 0:  # it refuses to run as root
+            for one in (settings, *settings.iterdir()):
+                os.chown(one, NOBODY, NOBODY)
+            words = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups", *words]
         self._process = subprocess.Popen(
-            self._words, env=self._environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            [*words, "--no-register-with-dns-sd"],
+            env={**os.environ, "HOME": str(settings)},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
         try:
             until(lambda: "1-I-0" in json.dumps(self._ask("/json/get_ports")), self._process)
@@ -183,7 +187,7 @@ def test_a_click_on_the_table_and_a_colour_arrive_over_mqtt(browser: Chromium, t
     wanted = configuration.make_heads()[0].point((0.5, -0.3, 0.0))
     pan, tilt = math.degrees(wanted.pan), math.degrees(wanted.tilt)
     with (
-        Ola(tmp_path) as ola,
+        Ola() as ola,
         mosquitto(port, tmp_path),
         Engine(show, configuration.make_outputs()) as engine,
         MqttService(engine, ["Moving-head"], MqttParameters(broker=f"mqtt://127.0.0.1:{port}")),
@@ -212,7 +216,7 @@ def test_a_click_on_the_table_and_a_colour_arrive_over_mqtt(browser: Chromium, t
 
 def test_a_slider_arrives_by_artnet(browser: Chromium, tmp_path: Path) -> None:
     configuration = read_configuration(DEFAULT)
-    with Ola(tmp_path) as ola, node_red(tmp_path, "artnet") as address:
+    with Ola() as ola, node_red(tmp_path, "artnet") as address:
         browser.open(address)
         slider = "document.querySelectorAll('.v-slider-thumb')[0]"
         browser.wait_for(f"!!{slider}")
