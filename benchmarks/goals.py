@@ -61,6 +61,7 @@ GOALS = {
     "arms.irb120_inverse_poses_per_s": Goal(1e6, at_least=True),
     "arms.irb1600_inverse_poses_per_s": Goal(1e6, at_least=True),
     "arms.irb6700_inverse_poses_per_s": Goal(1e6, at_least=True),
+    "arms.irb8700_inverse_poses_per_s": Goal(1e6, at_least=True),
     "arms.kr500_2mt_inverse_poses_per_s": Goal(1e6, at_least=True),
     "arms.round_trip_worst_error_m": Goal(1e-9),
     "motion.time_worst_error_percent": Goal(3.0),

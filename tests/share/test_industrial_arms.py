@@ -50,7 +50,7 @@ def test_it_loads_into_the_simulator_without_a_word(name):
     assert said == []
 
 
-@pytest.mark.parametrize("name", ["irb120", "irb1600", "irb6700"])
+@pytest.mark.parametrize("name", ["irb120", "irb1600", "irb6700", "irb8700"])
 def test_the_controlled_arm_stands_on_the_floor(name):
     robot = urdf.load(SHARE / f"{name}_description/urdf/{name}_controlled.urdf.xacro", {}, share_of)
     said = []

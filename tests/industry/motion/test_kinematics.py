@@ -188,7 +188,7 @@ def test_a_pose_out_of_reach_has_no_solution() -> None:
 
 def test_the_reach_ends_where_the_maker_says() -> None:
     for arm in ARMS.values():
-        assert arm.wrist_reach == pytest.approx(arm.reach, abs=0.006)
+        assert arm.wrist_reach == pytest.approx(arm.reach, abs=0.008)
 
 
 def test_shapes_are_kept() -> None:

@@ -1,0 +1,26 @@
+"""The arm ABB IRB 8700-800/3.50 in the simulator, for `daidalos rapid run --robot irb8700 --sim`."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    here = FindPackageShare("irb8700_description")
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("world", default_value="", description="SDF world to simulate (default: empty)"),
+            DeclareLaunchArgument("gui", default_value="true", description="whether to serve the studio"),
+            IncludeLaunchDescription(
+                PathJoinSubstitution([FindPackageShare("humanoid_description"), "launch", "controlled.launch.py"]),
+                launch_arguments={
+                    "model": PathJoinSubstitution([here, "urdf", "irb8700_controlled.urdf.xacro"]),
+                    "name": "irb8700",
+                    "controllers": "joint_state_broadcaster joint_trajectory_controller",
+                    "world": LaunchConfiguration("world"),
+                    "gui": LaunchConfiguration("gui"),
+                }.items(),
+            ),
+        ]
+    )
