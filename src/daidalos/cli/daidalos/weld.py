@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from daidalos.cli.daidalos.weld_arguments import add_robot, cell_of, finite, pose_of
 from daidalos.cli.daidalos.weld_load_tests import add_load_tests
+from daidalos.cli.daidalos.weld_servo import add_servo
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ class WeldVerb:
         experiment.add_argument("--json", action="store_true", help="print the figures as JSON")
         experiment.set_defaults(_command=_experiment, friction=True)
         add_load_tests(commands)
+        add_servo(commands)
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run the command."""
@@ -166,8 +168,7 @@ def _experiment(args: argparse.Namespace) -> int:
         page = experiment_report(done, rows, f"Experiment: {args.test}")
         write_new(args.output, {f"{args.test}.html": page})
     if args.json:
-        table = [{"figure": row.title, "workshop": row.printed, "here": row.ours, "remark": row.remark} for row in rows]
-        print(json.dumps({"welds": figures(done), "table": table}, indent=1))
+        print(json.dumps({"welds": figures(done), "table": [row.as_json() for row in rows]}, indent=1))
         return 0
     print(f"{'':48}{'workshop':>22}{'here':>20}")
     for row in rows:

@@ -30,6 +30,10 @@ class Row:
     ours: str
     remark: str = ""
 
+    def as_json(self) -> dict[str, str]:
+        """Return the row with the names of the table's columns."""
+        return {"figure": self.title, "workshop": self.printed, "here": self.ours, "remark": self.remark}
+
 
 def line_rows(experiment: Experiment) -> list[Row]:
     """Return the rows of the straight line."""

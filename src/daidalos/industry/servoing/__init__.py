@@ -1,0 +1,1 @@
+"""Servoing of a tool along a seam that a laser profile sensor measures ahead of it."""
