@@ -5,6 +5,7 @@ A machine's clock and load change from hour to hour, and a figure with them; how
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import socket
@@ -21,6 +22,7 @@ from benchmarks.processes import middle_and_tail_us, report, result, running, sa
 
 ROUND_TRIPS = 2000
 WARM = 300
+WAKES = 4000
 STREAM_S = 2.0
 SMALL = b"x" * 69
 ATTACHMENT = bytes(33)
@@ -32,10 +34,10 @@ UNIX_LINK, TCP_LINK = "unixsock-stream", "tcp"
 def zenoh_latency(role: str, link: str = UNIX_LINK) -> tuple[float, float]:
     """Return the median and the 99th percentile, in us, of what goes to another process and back over zenoh.
 
-    `role` is ``zenoh_ping`` for two topics, ``rmw_ping`` for the same with what ROS 2 asks of every message, or
-    ``zenoh_call`` for a query and its reply; for `link`, see `link_endpoint`.
+    `role` is ``zenoh_ping`` for two topics, or ``zenoh_call`` for a query and its reply; ``rmw_ping`` and ``rmw_call``
+    are the same with what ROS 2 asks of every message. For `link`, see `link_endpoint`.
     """
-    echo = "rmw_echo" if role == "rmw_ping" else "zenoh_echo"
+    echo = "rmw_echo" if role.startswith("rmw_") else "zenoh_echo"
     with link_endpoint(link) as endpoint, running("floors", echo, endpoint):
         return middle_and_tail_us(result(start("floors", role, endpoint))["times"])
 
@@ -44,6 +46,17 @@ def dds_latency() -> tuple[float, float]:
     """Return the same for two topics of the package cyclonedds."""
     with running("floors", "dds_echo"):
         return middle_and_tail_us(result(start("floors", "dds_ping"))["times"])
+
+
+def wakes_1khz() -> tuple[float, float]:
+    """Return the percentage of a core, and the jitter's 99th percentile in us, of a bare thread that wakes at 1 kHz."""
+    return share_and_jitter(result(start("floors", "sleep_1khz")))
+
+
+def share_and_jitter(measured: dict[str, Any]) -> tuple[float, float]:
+    """Return the same of the ``ticks``, the processor time ``cpu`` and the duration ``seconds`` of a role."""
+    jitter = sorted(abs(after - before - 0.001) for before, after in itertools.pairwise(measured["ticks"]))
+    return 100 * measured["cpu"] / measured["seconds"], jitter[len(jitter) * 99 // 100] * 1e6
 
 
 def zenoh_stream(size: int, link: str = UNIX_LINK) -> float:
@@ -126,18 +139,25 @@ def zenoh_ping(endpoint: str) -> None:
 def rmw_echo(endpoint: str) -> None:
     """Answer with rmw_zenoh's attachment, from a thread that is not zenoh's, as an executor does."""
     with _session(endpoint, "listen") as session:
-        pong, come, samples = _publisher(session, "pong"), _Gate(), []
+        pong, come, received = _publisher(session, "pong"), _Gate(), []
 
-        def receive(sample: Any) -> None:
-            samples.append(sample)
-            come.open(sample)
+        def receive(sample_or_query: Any) -> None:
+            received.append(sample_or_query)
+            come.open(sample_or_query)
 
-        kept = session.declare_subscriber("ping", _direct(receive))
+        subscriber = session.declare_subscriber("ping", _direct(receive))
+        queryable = session.declare_queryable("call", _direct(receive), complete=True)
         threading.Thread(target=lambda: (sys.stdin.read(), os._exit(0)), daemon=True).start()
         say_ready()
-        while kept:
+        while subscriber and queryable:
             come.wait()
-            pong.put(samples.pop().payload.to_bytes(), attachment=ATTACHMENT)
+            one = received.pop()
+            data = one.payload.to_bytes()
+            if hasattr(one, "reply"):
+                with one:
+                    one.reply("call", data, attachment=ATTACHMENT)
+            else:
+                pong.put(data, attachment=ATTACHMENT)
 
 
 def rmw_ping(endpoint: str) -> None:
@@ -153,6 +173,25 @@ def zenoh_call(endpoint: str) -> None:
         answered, querier = _Gate(), session.declare_querier("call")
         on_reply = _direct(answered.open)
         _repeat(lambda: querier.get(on_reply, payload=SMALL), answered)
+
+
+def rmw_call(endpoint: str) -> None:
+    with _session(endpoint, "connect") as session:
+        answered, querier = _Gate(), session.declare_querier("call")
+        on_reply = _direct(answered.open)
+        _repeat(lambda: querier.get(on_reply, payload=SMALL, attachment=ATTACHMENT), answered)
+
+
+def sleep_1khz() -> None:
+    """Wake a thread a thousand times a second, and report when it woke and the processor time that it took."""
+    ticks, gate, following = [], threading.Lock(), time.perf_counter()
+    gate.acquire()
+    before = time.process_time()
+    while len(ticks) < WAKES:
+        following += 0.001
+        gate.acquire(timeout=max(following - time.perf_counter(), 0.0))
+        ticks.append(time.perf_counter())
+    report(ticks=ticks, cpu=time.process_time() - before, seconds=ticks[-1] - ticks[0])
 
 
 class _Gate:
@@ -260,7 +299,10 @@ def dds_ping() -> None:
 
 ROLES: dict[str, Callable[..., None]] = {
     role.__name__: role
-    for role in (zenoh_echo, zenoh_ping, rmw_echo, rmw_ping, zenoh_call, zenoh_count, zenoh_flood, dds_echo, dds_ping)
+    for role in (
+        zenoh_echo, zenoh_ping, rmw_echo, rmw_ping, zenoh_call, rmw_call, zenoh_count, zenoh_flood, dds_echo, dds_ping,
+        sleep_1khz,
+    )
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ What crosses the machine is measured in turns with its floor (`benchmarks.floors
 
 from __future__ import annotations
 
-import itertools
 import os
 import resource
 import statistics
@@ -21,7 +20,7 @@ from benchmarks.messages import MESSAGES
 from benchmarks.processes import middle_and_tail_us, report, result, running, say_ready, start
 
 STREAM_S = 3.0
-TIMER_S = 8.0
+TIMER_S = 4.0
 ROUND_TRIPS = 2000
 CALLS = 1500
 WARM = 300
@@ -106,9 +105,9 @@ def measure_latencies() -> dict[str, float]:
             name: lambda pair=(answers, asks): _latency(*pair),
             f"floor_{name}": lambda f=floor: floors.zenoh_latency(f),
         }
-        if floor == "zenoh_ping":
-            ways["floor_round_trip_attached"] = lambda: floors.zenoh_latency("rmw_ping")
+        ways[f"floor_{name}_attached"] = lambda f=floor: floors.zenoh_latency(f.replace("zenoh", "rmw"))
         figures |= _latencies_in_turns(ways)
+        figures[f"{name}_times_floor"] = figures[f"{name}_p50_us"] / figures[f"floor_{name}_attached_p50_us"]
     return figures
 
 
@@ -117,7 +116,10 @@ def measure_dds_latencies() -> dict[str, float]:
     ways: dict[str, Callable[[], tuple[float, float]]] = {
         f"dds_{name}": lambda pair=(answers, asks): _latency(*pair) for name, (answers, asks, _) in LATENCIES.items()
     }
-    return _latencies_in_turns({**ways, "floor_dds": floors.dds_latency})
+    figures = _latencies_in_turns({**ways, "floor_dds": floors.dds_latency})
+    for name in LATENCIES:
+        figures[f"dds_{name}_times_floor"] = figures[f"dds_{name}_p50_us"] / figures["floor_dds_p50_us"]
+    return figures
 
 
 def _latencies_in_turns(ways: dict[str, Callable[[], tuple[float, float]]]) -> dict[str, float]:
@@ -138,12 +140,16 @@ def _latency(answers: str, asks: str) -> tuple[float, float]:
 
 
 def measure_timer() -> dict[str, float]:
-    measured = result(start("rclpy", "tick"))
-    jitter = sorted(abs(after - before - 0.001) for before, after in itertools.pairwise(measured["ticks"]))
-    return {
-        "timer_1khz_cpu_percent": 100 * measured["cpu"] / measured["seconds"],
-        "timer_1khz_jitter_p99_us": jitter[len(jitter) * 99 // 100] * 1e6,
-    }
+    """Measure a timer in turns with a bare thread that wakes as often."""
+    ours, bare = zip(
+        *((floors.share_and_jitter(result(start("rclpy", "tick"))), floors.wakes_1khz()) for _ in range(TURNS)),
+        strict=True,
+    )
+    figures = {}
+    for index, name in enumerate(("cpu_percent", "jitter_p99_us")):
+        figures[f"timer_1khz_{name}"] = statistics.median(pair[index] for pair in ours)
+        figures[f"floor_timer_1khz_{name}"] = statistics.median(pair[index] for pair in bare)
+    return figures
 
 
 def measure_start() -> dict[str, float]:
