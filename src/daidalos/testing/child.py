@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+from importlib.machinery import SourceFileLoader
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +35,7 @@ def run_test(scenario: Scenario, node_id: str, options: dict[str, Any], inifile:
     """
     from _pytest.config import Config
 
+    _support_modules_as_programs()
     set_present(scenario)
     config_file = [] if inifile is None else ["-c", inifile]
     config = Config.fromdictargs(options, [*config_file, node_id])
@@ -41,6 +44,20 @@ def run_test(scenario: Scenario, node_id: str, options: dict[str, Any], inifile:
         return int(config.hook.pytest_cmdline_main(config=config) or 0)
     finally:
         config._ensure_unconfigure()
+
+
+def _support_modules_as_programs() -> None:
+    """Give pytest's loader of modules the method by which `runpy` runs one as a program, as it is written."""
+    from _pytest.assertion.rewrite import AssertionRewritingHook
+
+    def get_code(self: AssertionRewritingHook, name: str) -> Any:
+        spec = find_spec(name)
+        assert spec is not None
+        assert spec.origin is not None
+        return SourceFileLoader(name, spec.origin).get_code(name)
+
+    hook: Any = AssertionRewritingHook
+    hook.get_code = get_code
 
 
 class _Reporter:

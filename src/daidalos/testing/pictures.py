@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daidalos.testing.graph import PoseValue
+from daidalos.testing.kept_world import running_server
 from daidalos.testing.signals import Signal
 
 if TYPE_CHECKING:
@@ -30,7 +31,8 @@ def draw_failure(scenario: Scenario, path: Path, title: str) -> None:
     """Draw where everything is, and how what was observed has changed, into a PNG file."""
     from PIL import Image, ImageDraw
 
-    simulation = _running_simulation()
+    server = running_server()
+    simulation = None if server is None else server.host.paced.simulation
     plotted = [signal for signal in scenario.signals if _numbers(signal)][:_MAX_PLOTS]
     view_height = _SIZE if simulation is not None else 0
     height = 40 + view_height + _PLOT_HEIGHT * len(plotted)
@@ -42,14 +44,6 @@ def draw_failure(scenario: Scenario, path: Path, title: str) -> None:
     for number, signal in enumerate(plotted):
         _plot(draw, signal, 40 + view_height + _PLOT_HEIGHT * number, _COLORS[number % len(_COLORS)])
     image.save(path)
-
-
-def _running_simulation() -> Simulation | None:
-    import sys
-
-    module = sys.modules.get("daidalos.nodes.gazebo_ros.gzserver")
-    server = None if module is None else next(iter(module.RUNNING), None)
-    return None if server is None else server.host.paced.simulation
 
 
 def _world(simulation: Simulation, scenario: Scenario) -> Any:

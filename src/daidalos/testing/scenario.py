@@ -16,6 +16,7 @@ from daidalos.common.errors import UserError
 from daidalos.lockstep.commands import body_of
 from daidalos.lockstep.programs import Program
 from daidalos.lockstep.run import Run
+from daidalos.testing.kept_world import keep_world
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -224,13 +225,15 @@ class Scenario:
         return bag
 
     def end(self) -> None:
-        """Close the bag; the programs of the run stop where they are."""
+        """Close the bag and keep what the world looks like; the programs of the run stop where they are."""
         if self._ended:
             return
         self._ended = True
         for callback in self.on_end:
             callback()
         recorder = self._recorder
+        if recorder is not None:
+            keep_world(self.folder)
         if recorder is not None and recorder.status is None:
             ended = threading.Event()
             recorder.on_exit.append(lambda status: ended.set())

@@ -13,6 +13,7 @@ from daidalos.common.pose3 import Pose
 from daidalos.common.suggestions import hint
 from daidalos.nodes.gazebo_ros.built_in import find_model_file, find_world_file
 from daidalos.testing.graph import PoseValue
+from daidalos.testing.kept_world import running_server
 from daidalos.testing.programs import Nodes
 from daidalos.testing.scenario import Scenario, ScenarioFailure
 from daidalos.testing.signals import FIRST_S, Requirement, Signal
@@ -203,7 +204,7 @@ class World:
     @property
     def is_running(self) -> bool:
         """Whether a simulator runs."""
-        return self._server() is not None
+        return running_server() is not None
 
     @property
     def simulation(self) -> Simulation:
@@ -351,22 +352,17 @@ class World:
     def _robot(self, name: str, namespace: str) -> Robot:
         return self._robots.setdefault(name, Robot(self, name, namespace))
 
-    def _server(self) -> Any:
-        from daidalos.nodes.gazebo_ros.gzserver import RUNNING
-
-        return next(iter(RUNNING), None)
-
     def _wait_for_server(self) -> Any:
         __tracebackhide__ = True
         if not self.scenario.wait_for_graph(self._is_ready, _WAIT_S):
             raise ScenarioFailure("no simulator has started; load a world, or launch a file that starts one")
-        return self._server()
+        return running_server()
 
     def _is_ready(self) -> bool:
         server = self._nodes.started.get("gazebo")
         if server is not None and not server.is_alive:
             raise ScenarioFailure("the simulator has ended; its output says why")
-        return self._server() is not None
+        return running_server() is not None
 
 
 def _simple_model(name: str, shape: Any, height: float, *, is_scripted: bool) -> Any:

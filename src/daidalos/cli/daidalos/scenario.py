@@ -28,7 +28,7 @@ class ScenarioVerb:
             "--results", default="scenario-results", metavar="FOLDER", help="where bags and pictures of failures go"
         )
         run.set_defaults(_command=_run)
-        show = commands.add_parser("show", help="play the bag of a failure in the studio")
+        show = commands.add_parser("show", help="play the bag of a failure in the studio, with its world and robots")
         show.add_argument("folder", type=Path, help="folder of the failure, or a bag")
         show.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
         show.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
@@ -73,16 +73,25 @@ def _parse_setting(text: str) -> tuple[str, Any]:
 
 
 def _show(args: argparse.Namespace) -> int:
-    """Play a bag again and again beside the studio."""
+    """Play a bag again and again beside the studio, with the world and the robots of the failure."""
     from launch.actions import ExecuteProcess
     from launch_ros.actions import Node
+
+    from daidalos.bags.reader import BagReader
+    from daidalos.testing.kept_world import FILE_NAME
 
     bag = args.folder / "bag" if (args.folder / "bag").is_dir() else args.folder
     if not bag.exists():
         raise UserError(f"there is no bag at '{bag}'")
     for picture in sorted(args.folder.glob("*.png")) if args.folder.is_dir() else ():
         print(f"picture: {picture}")
-    words = ["-m", "daidalos.cli.ros2", "bag", "play", str(bag), "--clock", "--loop", "--disable-keyboard-controls"]
+    play = ["-m", "daidalos.cli.ros2", "bag", "play", str(bag), "--loop", "--disable-keyboard-controls"]
+    with BagReader(bag) as reader:
+        if "/clock" not in reader.topics:  # else there would be two clocks
+            play.append("--clock")
+    beside = [play]
+    if (args.folder / FILE_NAME).is_file():
+        beside.append(["-m", "daidalos.testing.replay", str(args.folder)])
     return run_launch(
         Node(
             package="foxglove_bridge",
@@ -90,5 +99,5 @@ def _show(args: argparse.Namespace) -> int:
             parameters=[{"port": args.port, "open_browser": not args.no_browser}],
             output="screen",
         ),
-        ExecuteProcess(cmd=[sys.executable, *words], output="screen"),
+        *(ExecuteProcess(cmd=[sys.executable, *words], output="screen") for words in beside),
     )

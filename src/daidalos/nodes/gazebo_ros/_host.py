@@ -182,6 +182,13 @@ class Host:
 
         self.paced.call(work)
 
+    @property
+    def known_models(self) -> dict[str, Model]:
+        """Descriptions of the models of the world, and of those that were deleted from it, by name."""
+        deleted = {name: deleted.model for name, deleted in self._deleted.items()}
+        simulation = self.paced.simulation
+        return deleted | {name: simulation.instance(name).model for name in simulation.models}
+
     def delete_spawned(self) -> None:
         """Remove all models that were added after the start."""
         for name in sorted(self.spawned):
