@@ -21,8 +21,8 @@ def running_server() -> GzServer | None:
 def keep_world(folder: Path) -> None:
     """Write the shapes of all models of the running world into a folder, also of those deleted meanwhile.
 
-    The file is a ``visualization_msgs/msg/MarkerArray`` in CDR; each marker is in the frame ``model::link``, whose poses
-    are in the ``link_states`` of the bag. Nothing is written where no simulator runs.
+    The file is a ``visualization_msgs/msg/MarkerArray`` in CDR; each marker is in the frame ``model::link``, whose
+    poses are in the ``link_states`` of the bag. Nothing is written where no simulator runs.
     """
     server = running_server()
     if server is None:

@@ -30,7 +30,7 @@ STATES = "/gazebo/link_states"
 FRAME = "world"
 _RATE = 25.0
 _ALL_AGAIN = 25
-"""After how many messages the frames of links that stand still are sent again: a page forgets them when a bag restarts."""
+"""After how many messages links that stand still are sent again: a page forgets them when a bag restarts."""
 
 _STILL = 1e-6
 
