@@ -22,6 +22,8 @@ ALLOWED = {
     "industry/lighting/device.py": "how long a broker is lost, and how often the state is published",
     "industry/lighting/embedded_broker.py": "one turn of an event loop at its end",
     "industry/lighting/engine.py": "the pace of DMX frames, which lamps expect in real time",
+    "industry/rsi/client.py": "how long a robot is silent, and the computing time that is reported",
+    "industry/rsi/controller_server.py": "the cycle of a controller, which does not wait",
     "industry/welding/rapid_paths.py": "the computing time of a program that may be endless",
     "navigation/planners/search.py": "the computing time of a search, which max_planning_time limits",
     "nodes/asset_folders.py": "the age of a file",

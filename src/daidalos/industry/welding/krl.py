@@ -46,7 +46,7 @@ def read_krl(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         assigned = _ASSIGNED.match(line)
         if assigned and assigned[1].upper() == "$BASE":
             parts = {} if assigned[2].upper() == "$NULLFRAME" else _components(assigned[2])
-            base = _pose({**dict.fromkeys("XYZABC", 0.0), **parts})
+            base = pose_of({**dict.fromkeys("XYZABC", 0.0), **parts})
         motion = _MOTION.match(line)
         if motion is None:
             continue
@@ -57,7 +57,7 @@ def read_krl(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
             _target(text, declared, path, number) for text in _TARGET.findall(motion[2])[: 2 if kind == "CIRC" else 1]
         ]
         if kind == "PTP":
-            runs.begin(base @ _pose(targets[0]) if targets and _is_pose(targets[0]) else None)
+            runs.begin(base @ pose_of(targets[0]) if targets and _is_pose(targets[0]) else None)
             continue
         _require(targets, kind, runs.last is None, path, number)
         filled = [_filled(target, targets[-1], base, runs.last) for target in targets]
@@ -104,10 +104,11 @@ def _filled(
 ) -> NDArray[np.float64]:
     """Return a pose in the robot's base; what a target leaves out is as at its goal, or at the last position."""
     before = dict.fromkeys("XYZABC", 0.0) if last is None else components_of(np.linalg.inv(base) @ last)
-    return base @ _pose({**before, **{key: goal[key] for key in "ABC" if key in goal}, **target})
+    return base @ pose_of({**before, **{key: goal[key] for key in "ABC" if key in goal}, **target})
 
 
-def _pose(parts: dict[str, float]) -> NDArray[np.float64]:
+def pose_of(parts: dict[str, float]) -> NDArray[np.float64]:
+    """Return the pose (4, 4) of X, Y, Z [mm] and A, B, C [deg]."""
     from scipy.spatial.transform import Rotation
 
     pose = np.eye(4)

@@ -1,0 +1,1 @@
+"""KUKA's Robot Sensor Interface over Ethernet: telegrams, the controller's side simulated, and the program's side."""
