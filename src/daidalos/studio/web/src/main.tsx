@@ -1,6 +1,7 @@
 // Entry: builds the application and puts it into the page.
+import { signal } from "@preact/signals";
 import { render } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import "dockview-core/dist/styles/dockview.css";
 import "uplot/dist/uPlot.min.css";
 import "./styles/theme.css";
@@ -17,7 +18,9 @@ import { TopBar } from "./app/top_bar";
 import { loadExtensions } from "./extensions";
 import { PANELS } from "./panels/registry";
 
-let layout: Layout;
+const layout = signal<Layout | undefined>(undefined);
+/** How long closing a panel can be undone by a button [ms]; the menu of panels can do it later as well. */
+const UNDO_MS = 8000;
 const needsExtensions = asksForMore(location.search, PANELS);
 if (needsExtensions) {
   await loadExtensions();
@@ -27,17 +30,37 @@ const opening = readOpening(location.search, PANELS);
 function App({ studio }: { studio: Studio }) {
   const dock = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    layout = new Layout(dock.current as HTMLDivElement, studio, opening, readFront(location.search, PANELS));
-    studio.openPanel = (id, params, direction) => layout.openById(id, params, direction);
+    const made = new Layout(dock.current as HTMLDivElement, studio, opening, readFront(location.search, PANELS));
+    studio.openPanel = (id, params, direction) => made.openById(id, params, direction);
+    layout.value = made;
   }, []);
   return (
     <>
-      <TopBar studio={studio} layout={() => layout} />
+      <TopBar studio={studio} layout={layout} />
       <main class="dock" ref={dock} />
+      <Closed />
       <Lost studio={studio} />
       <Help />
     </>
   );
+}
+
+/** A message for a while after a panel was closed, with how to undo that. */
+function Closed() {
+  const closed = layout.value?.lastClosed;
+  const [dismissed, dismiss] = useState<unknown>(undefined);
+  useEffect(() => {
+    const timer = setTimeout(() => dismiss(closed), UNDO_MS);
+    return () => clearTimeout(timer);
+  }, [closed]);
+  return closed && closed !== dismissed ? (
+    <div class="closed" role="status" data-test="closed">
+      <span>“{closed.title}” was closed</span>
+      <button class="button" onClick={() => layout.value?.reopen()}>
+        Undo
+      </button>
+    </div>
+  ) : null;
 }
 
 /** A message over all panels while the connection is lost. */

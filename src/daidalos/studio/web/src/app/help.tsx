@@ -12,6 +12,12 @@ const VIEW_KEYS = [
   ["?", "This help"],
 ] as const;
 
+const TAB_KEYS = [
+  ["← →", "Another tab"],
+  ["Home  End", "First or last tab"],
+  ["Del", "Close the panel"],
+] as const;
+
 const SIMULATION_KEYS = [
   ["t  r  s", "Move, rotate, scale a model"],
   ["Ctrl", "Snap while dragging"],
@@ -42,6 +48,7 @@ export function Help() {
         <Keys title="Tools" rows={TOOLS.map(({ key, title }) => [key, title] as const)} />
         <Keys title="View" rows={VIEW_KEYS} />
         <Keys title="Mouse" rows={MOUSE} />
+        <Keys title="Tabs" rows={TAB_KEYS} />
         <Keys title="Simulation" rows={SIMULATION_KEYS} />
         <Keys title="Plot" rows={PLOT_MOUSE} />
       </div>

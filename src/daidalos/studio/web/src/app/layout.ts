@@ -16,16 +16,15 @@ import type { DisplayConfig } from "../displays/settings";
 import { PICTURE_PANELS } from "../displays/picture_display";
 import { allPlots, firstPlot, isSplit } from "./arrangement";
 import { showErrorLine } from "../ui/error_line";
+import { ClosedPanels, type ClosedPanel } from "./closed_panels";
+import { describeTabs } from "./dock_tabs";
 import type { Opening } from "./opening";
+import { type Room, roomOf } from "./room";
 import { forget, isRecord, read, write } from "./stored";
 import type { Studio } from "./studio";
 
 const KEY = "layout";
 const THEME = { name: "daidalos", className: "dockview-theme-daidalos", gap: 6 };
-/** Below this width there is no right column; what matters of it goes behind the displays. */
-const NARROW_PX = 1200;
-/** Below this width, that of a phone, all panels lie behind the view. */
-const PHONE_PX = 640;
 const DISPLAYS_NARROW_PX = 250;
 const IMAGE_PX = 300;
 /** What the ids of panels of displays begin with. */
@@ -40,6 +39,9 @@ interface Position {
 export class Layout {
   private readonly dock: DockviewApi;
   private readonly key: string;
+  private readonly kept = new Map<Room, SerializedDockview>();
+  private readonly closed: ClosedPanels;
+  private room = roomOf(window.innerWidth);
   private saving = 0;
   private isRearranging = false;
 
@@ -56,14 +58,32 @@ export class Layout {
       createComponent: ({ name }) => new PanelHost(name, studio),
       disableFloatingGroups: true,
     });
+    this.closed = new ClosedPanels(this.dock, () => !this.isRearranging);
     this.restore();
     this.addAsked();
     if (front) {
       this.open(front);
     }
+    describeTabs(element, this.dock);
     this.dock.onDidLayoutChange(() => this.saveSoon());
     this.watchPictures();
     addEventListener("pagehide", () => this.save());
+    addEventListener("resize", () => this.followWidth());
+  }
+
+  /** The panel that was closed last; undefined: none can be opened again. */
+  get lastClosed(): ClosedPanel | undefined {
+    return this.closed.last.value;
+  }
+
+  /** Open the panel again that was closed last, where it was and with what it showed. */
+  reopen(): void {
+    const panel = this.closed.take();
+    if (panel?.id.startsWith(PICTURE)) {
+      this.studio.displays.enable(panel.id.slice(PICTURE.length), true);
+    } else if (panel) {
+      this.closed.open(panel);
+    }
   }
 
   /** Show a panel: the one that is there, else a new one. */
@@ -84,7 +104,8 @@ export class Layout {
   }
 
   reset(): void {
-    forget(this.key);
+    forget(this.roomKey);
+    this.kept.clear();
     this.rearrange(() => this.dock.clear());
     this.arrange();
     this.showPictures(this.studio.displays.configs.filter(({ type, enabled }) => enabled && type in PICTURE_PANELS));
@@ -95,19 +116,76 @@ export class Layout {
       this.arrange(); // the address has precedence over the saved layout
       return;
     }
-    const saved = read<SerializedDockview | undefined>(this.key, undefined, (value): value is SerializedDockview =>
+    if (!this.load(this.saved())) {
+      this.arrange();
+    }
+  }
+
+  private saved(): SerializedDockview | undefined {
+    return read<SerializedDockview | undefined>(this.roomKey, undefined, (value): value is SerializedDockview =>
       isRecord(value),
     );
-    if (saved) {
-      try {
-        this.dock.fromJSON(saved);
-        return;
-      } catch (error) {
-        console.warn("the saved layout cannot be used", error);
-        this.dock.clear();
-      }
+  }
+
+  /** Take a layout that was saved; returns whether it could be used. */
+  private load(saved: SerializedDockview | undefined): boolean {
+    if (!saved) {
+      return false;
     }
-    this.arrange();
+    try {
+      this.dock.fromJSON(saved);
+      return true;
+    } catch (error) {
+      console.warn("the saved layout cannot be used", error);
+      this.dock.clear();
+      return false;
+    }
+  }
+
+  /** Where the layout of this width is kept. */
+  private get roomKey(): string {
+    return this.room === "wide" ? this.key : `${this.key}.${this.room}`;
+  }
+
+  /** Arrange the panels anew when the window has become a narrow one, a phone's, or a wide one again. */
+  private followWidth(): void {
+    const room = roomOf(window.innerWidth);
+    if (room === this.room) {
+      return;
+    }
+    this.save();
+    this.kept.set(this.room, this.dock.toJSON());
+    const open = this.dock.panels.map(({ id, title, params, view }) => ({
+      id,
+      title: title ?? "",
+      component: view.contentComponent,
+      params: params ?? {},
+    }));
+    this.room = room;
+    this.rearrange(() => {
+      if (!this.load(this.kept.get(room) ?? (this.studio.arrangement ? undefined : this.saved()))) {
+        this.dock.clear();
+        this.arrange();
+      }
+      for (const panel of this.dock.panels) {
+        const before = open.find(({ id }) => id === panel.id);
+        if (before) {
+          panel.api.updateParameters(before.params);
+        }
+      }
+      this.addMissing(open);
+    });
+  }
+
+  /** Add panels that were open in a window of another width. */
+  private addMissing(open: readonly ClosedPanel[]): void {
+    const active = this.dock.activePanel;
+    const reference = this.dock.getPanel("displays") ?? this.dock.panels[0];
+    for (const panel of open.filter(({ id }) => !this.dock.getPanel(id))) {
+      const position = reference ? { position: { referencePanel: reference.id } } : {};
+      this.dock.addPanel({ ...panel, ...position, inactive: reference !== undefined });
+    }
+    active?.api.setActive();
   }
 
   private arrange(): void {
@@ -126,10 +204,12 @@ export class Layout {
     const main = this.dock.addPanel({ id, component: id, title, params: details });
     const [beside, width] = (panel as Partial<BuiltInPanel>).beside ?? [];
     if (beside !== undefined && width !== undefined) {
-      const position = { referencePanel: id, direction: "left" } as const;
-      this.dock
-        .addPanel({ id: beside, component: beside, title: panelType(beside).title, position })
-        .api.setSize({ width });
+      const direction = this.room === "phone" ? "within" : "left";
+      const position = { referencePanel: id, direction } as const;
+      const added = this.dock.addPanel({ id: beside, component: beside, title: panelType(beside).title, position });
+      if (direction === "left") {
+        added.api.setSize({ width });
+      }
       main.api.setActive();
     }
     if (this.studio.arrangement) {
@@ -226,7 +306,7 @@ export class Layout {
         ...(beside === undefined ? {} : { position: { referencePanel: beside, direction } }),
       });
     const scene = add("scene");
-    if (width < PHONE_PX) {
+    if (this.room === "phone") {
       ["displays", "topics", "message"].forEach((id) => add(id, "scene"));
       scene.api.setActive();
       return;
@@ -237,7 +317,7 @@ export class Layout {
       add("simulation", "scene");
       add("displays", "entities");
     }
-    if (width < NARROW_PX) {
+    if (this.room === "narrow") {
       add("topics", displays.id);
       add("message", displays.id);
       displays.api.setSize({ width: DISPLAYS_NARROW_PX });
@@ -268,7 +348,7 @@ export class Layout {
     if (this.studio.arrangement) {
       return; // the file is read again next time
     }
-    write(this.key, this.dock.toJSON());
+    write(this.roomKey, this.dock.toJSON());
   }
 }
 

@@ -1,4 +1,5 @@
 // The bar at the top: name, state of the connection, robot time, and menus.
+import type { ReadonlySignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import { PANELS } from "../panels/registry";
 import { formatTime } from "../ros/time";
@@ -14,7 +15,13 @@ import { theme, toggleTheme } from "./theme";
 
 const LINK_WORDS = { connecting: "Connecting", connected: "Connected", lost: "Reconnecting" } as const;
 
-export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layout }) {
+interface Props {
+  studio: Studio;
+  layout: ReadonlySignal<Layout | undefined>;
+}
+
+export function TopBar({ studio, layout }: Props) {
+  const closed = layout.value?.lastClosed;
   return (
     <header class="top-bar">
       <span class="brand">
@@ -29,12 +36,17 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
       <FileMenu studio={studio} layout={layout} />
       <Menu label="Panels" icon="panel">
         {PANELS.list.map((panel) => (
-          <MenuItem key={panel.id} icon={iconNamed(panel.icon, "panel")} onChoose={() => layout().open(panel)}>
+          <MenuItem key={panel.id} icon={iconNamed(panel.icon, "panel")} onChoose={() => layout.value?.open(panel)}>
             {panel.title}
           </MenuItem>
         ))}
         <MenuSeparator />
-        <MenuItem icon="layout" onChoose={() => layout().reset()}>
+        {closed && (
+          <MenuItem icon="undo" onChoose={() => layout.value?.reopen()}>
+            Reopen “{closed.title}”
+          </MenuItem>
+        )}
+        <MenuItem icon="layout" onChoose={() => layout.value?.reset()}>
           Reset layout
         </MenuItem>
         <MenuItem icon="reset" onChoose={() => studio.displays.reset()}>
@@ -51,7 +63,7 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
   );
 }
 
-function FileMenu({ studio, layout }: { studio: Studio; layout: () => Layout }) {
+function FileMenu({ studio, layout }: Props) {
   const file = useRef<HTMLInputElement>(null);
   const attempt = (work: Promise<void>) =>
     void work.catch((error: Error) => studio.session.addStatus({ level: 2, text: error.message }));
@@ -66,10 +78,14 @@ function FileMenu({ studio, layout }: { studio: Studio; layout: () => Layout }) 
         <MenuItem icon="save" note="displays and view" onChoose={save}>
           Save as .rviz
         </MenuItem>
-        <MenuItem icon="save" note="plots" onChoose={() => attempt(savePlots(studio, layout()))}>
+        <MenuItem icon="save" note="plots" onChoose={() => layout.value && attempt(savePlots(studio, layout.value))}>
           Save as PlotJuggler .xml
         </MenuItem>
-        <MenuItem icon="save" note="panels and displays" onChoose={() => saveLayout(layout().state)}>
+        <MenuItem
+          icon="save"
+          note="panels and displays"
+          onChoose={() => layout.value && saveLayout(layout.value.state)}
+        >
           Save layout
         </MenuItem>
       </Menu>

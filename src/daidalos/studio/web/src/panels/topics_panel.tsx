@@ -69,7 +69,7 @@ function TopicsPanel({ studio, visible }: PanelProps) {
         />
         <span class="faint figures">{topics.length}</span>
       </div>
-      <div class="scroll" role="list">
+      <div class="scroll">
         {rows(outer)}
         {inner.length > 0 && !wanted && (
           <button
@@ -101,7 +101,7 @@ function TopicRow({ studio, topic, isVisible }: { studio: Studio; topic: TopicIn
   };
   return (
     <>
-      <div class={`topic-row ${selected ? "selected" : ""}`} role="listitem" data-topic={topic.name}>
+      <div class={`topic-row ${selected ? "selected" : ""}`} data-topic={topic.name}>
         <button
           class="turn"
           aria-expanded={isOpen}

@@ -46,6 +46,8 @@ export class Viewport {
     this.renderer.shadowMap.type = PCFShadowMap;
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", "3-D view of the robot's world");
     this.canvas.addEventListener("webglcontextrestored", this.invalidate);
     container.append(this.canvas);
     this.view = new View(this.canvas);
