@@ -7,12 +7,16 @@ import queue
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from functools import partial
+from typing import TypeVar
 
 from daidalos.testing.documents import read_scenario
 from daidalos.testing.journal import Journal, Record
-from daidalos.testing.plan import Plan, Run
+from daidalos.testing.plan import Plan
 from daidalos.testing.processes import ScenarioProcess
 from daidalos.testing.single import run_one
+
+T = TypeVar("T")
 
 
 def run_fleet(
@@ -41,7 +45,8 @@ def run_fleet(
     read_scenario(plan.scenario, None if first is None else first.parameters)  # a fault is better told at once
     missing = [run for run in plan.runs() if run.number not in journal.records]
     if ray is None or not missing:
-        results = _here(plan, missing, journal, processes or default_processes())
+        carry_out = partial(run_one, scenario=plan.scenario, folder=journal.folder)
+        results = run_here(missing, lambda process, run: carry_out(process, run=run), processes)
     else:
         from daidalos.testing.cluster import run_on_cluster
 
@@ -51,20 +56,32 @@ def run_fleet(
         on_result(record)
 
 
-def _here(plan: Plan, runs: Sequence[Run], journal: Journal, count: int) -> Iterator[Record]:
-    """Yield the results of runs on this machine as they come."""
+def run_here(
+    runs: Sequence[T], perform: Callable[[ScenarioProcess, T], Record], processes: int | None = None
+) -> Iterator[Record]:
+    """Yield the results of runs on this machine as they come.
+
+    Parameters
+    ----------
+    runs : sequence
+    perform : callable
+        Carries out a run in a process of scenarios, and returns its result.
+    processes : int, optional
+        How many run at the same time; by default one a processor.
+    """
+    count = processes or default_processes()
     free: queue.SimpleQueue[ScenarioProcess] = queue.SimpleQueue()
     workers = [ScenarioProcess() for _ in range(max(1, min(count, len(runs))))]
     for worker in workers:
         free.put(worker)
     stop = threading.Event()
 
-    def carry_out(run: Run) -> Record | None:
+    def carry_out(run: T) -> Record | None:
         if stop.is_set():
             return None
         process = free.get()
         try:
-            return run_one(process, plan.scenario, run, journal.folder)
+            return perform(process, run)
         finally:
             free.put(process)
 

@@ -227,11 +227,15 @@ class ActionClient:
         __tracebackhide__ = True
         return self.send_goal(self._kind.Goal(**fields), within=within, on_feedback=on_feedback)
 
-    def send_goal(self, goal: Any, *, within: float, on_feedback: Callable[[Any], None] | None = None) -> Any:
-        """Send a goal, and wait for its result; see `send`."""
-        __tracebackhide__ = True
-        from action_msgs.msg import GoalStatus
+    def start_goal(self, goal: Any, *, within: float, on_feedback: Callable[[Any], None] | None = None) -> Any:
+        """Send a goal, wait until it is accepted, and return the future of its result.
 
+        Raises
+        ------
+        ScenarioFailure
+            When there is no server in time, or the goal is rejected.
+        """
+        __tracebackhide__ = True
         until = self._scenario.now + within
         if not self._scenario.wait_for_graph(self._client.server_is_ready, within):
             raise ScenarioFailure(f"there was no action '{self.name}' within {within:g} s")
@@ -242,6 +246,15 @@ class ActionClient:
             raise ScenarioFailure(f"the action '{self.name}' did not accept the goal")
         result = accepted.result().get_result_async()
         result.add_done_callback(lambda _: self._scenario.notify())
+        return result
+
+    def send_goal(self, goal: Any, *, within: float, on_feedback: Callable[[Any], None] | None = None) -> Any:
+        """Send a goal, and wait for its result; see `send`."""
+        __tracebackhide__ = True
+        from action_msgs.msg import GoalStatus
+
+        until = self._scenario.now + within
+        result = self.start_goal(goal, within=within, on_feedback=on_feedback)
         if not self._scenario.wait(result.done, until - self._scenario.now):
             raise ScenarioFailure(f"the goal of '{self.name}' has not ended within {within:g} s")
         outcome = result.result()

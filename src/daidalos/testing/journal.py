@@ -10,10 +10,9 @@ from dataclasses import asdict, dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, Protocol
 
 from daidalos.common.errors import UserError
-from daidalos.testing.plan import Plan
 
 _PLAN = "plan.json"
 _LINES = "runs.jsonl"
@@ -50,13 +49,20 @@ class Record:
     folder: str = ""
 
 
+class Identified(Protocol):
+    """What results belong to, such as a `Plan`."""
+
+    def identity(self) -> dict[str, Any]:
+        """Return what makes results belong to it, as plain data."""
+
+
 class Journal:
     """Results of a plan, which survive the end of the process at any time.
 
     Parameters
     ----------
     folder : Path
-    plan : Plan
+    plan : Identified
 
     Raises
     ------
@@ -64,7 +70,7 @@ class Journal:
         When the folder has the results of another plan.
     """
 
-    def __init__(self, folder: Path, plan: Plan) -> None:
+    def __init__(self, folder: Path, plan: Identified) -> None:
         self.folder = folder
         folder.mkdir(parents=True, exist_ok=True)
         path, identity = folder / _PLAN, plan.identity()

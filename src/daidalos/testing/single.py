@@ -8,7 +8,7 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from daidalos.testing.scenario import Scenario
 
 PICTURES = "failures"
+RESULT = "result.json"
 
 
 @dataclass(frozen=True)
@@ -72,11 +73,11 @@ def run_once(
     record : bool
         Whether to record a bag; where not, the output is written to a file beside the picture.
     """
-    folder = Path(tempfile.mkdtemp(prefix="daidalos-scenario-"))
-    try:
-        request = Request(
+
+    def request_of(folder: Path) -> Request:
+        return Request(
             "daidalos.testing.single:perform",
-            {"path": str(document.path.resolve()), "result": str(folder / "result.json")},
+            {"path": str(document.path.resolve()), "result": str(folder / RESULT)},
             seed,
             document.timeout,
             str(folder),
@@ -88,15 +89,30 @@ def run_once(
             pictures=document.pictures,
             quiet=not record,
         )
-        status = process.run(request)
-        result = _read_result(folder / "result.json", status)
+
+    return carry_out(process, request_of, results / f"{slug(document.name)}-{seed}")
+
+
+def carry_out(process: ScenarioProcess, request_of: Callable[[Path], Request], kept: Path) -> Result:
+    """Carry out a request that writes a report; see `write_report`.
+
+    Parameters
+    ----------
+    process : ScenarioProcess
+    request_of : callable
+        Returns the request, given the folder for its files; it writes its report to `RESULT` there.
+    kept : Path
+        Where the folder is copied to if the scenario fails.
+    """
+    folder = Path(tempfile.mkdtemp(prefix="daidalos-scenario-"))
+    try:
+        result = _read_result(folder / RESULT, process.run(request_of(folder)))
         if result.passed:
             return result
-        goal = results / f"{slug(document.name)}-{seed}"
-        shutil.rmtree(goal, ignore_errors=True)
-        goal.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copytree(folder, goal)
-        return Result(False, result.message, result.simulated_s, result.metrics, goal)
+        shutil.rmtree(kept, ignore_errors=True)
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(folder, kept)
+        return Result(False, result.message, result.simulated_s, result.metrics, kept)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -135,23 +151,38 @@ def _read_result(path: Path, status: int) -> Result:
 
 def perform(scenario: Scenario, path: str, result: str) -> int:
     """Run the scenario of a file, and write its result as JSON; called in the process of the scenario."""
+    from daidalos.testing.steps import run_document
+
+    write_report(scenario, lambda: run_document(scenario, path), Path(path).name, Path(result))
+    return 0
+
+
+def write_report(scenario: Scenario, body: Callable[[], None], title: str, result: Path) -> None:
+    """Run a scenario's body, and write what came of it as JSON; draw a picture of a failure.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    body : callable
+    title : str
+        Of the picture.
+    result : Path
+    """
     from daidalos.common.errors import UserError
     from daidalos.testing.pictures import draw_failure
     from daidalos.testing.scenario import ScenarioFailure
-    from daidalos.testing.steps import run_document
 
     message = ""
     try:
-        run_document(scenario, path)
+        body()
         scenario.check()
     except (ScenarioFailure, UserError) as failure:
         message = str(failure)
-        draw_failure(scenario, scenario.folder / "failure.png", Path(path).name)
+        draw_failure(scenario, scenario.folder / "failure.png", title)
     report = {
         "passed": not message,
         "message": message,
         "simulated_s": round(scenario.now, 6),
         "metrics": scenario.metrics,
     }
-    Path(result).write_text(json.dumps(report), encoding="utf-8")
-    return 0
+    result.write_text(json.dumps(report), encoding="utf-8")
