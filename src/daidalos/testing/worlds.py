@@ -230,7 +230,7 @@ class World:
         def look() -> None:
             while True:
                 scheduler.sleep_until(scheduler.now_ns + round(1e9 * _PERIOD_S))
-                server = self._server()  # not `read`, which would raise what the test itself is to be told
+                server = running_server()  # not `read`, which would raise what the test itself is to be told
                 if server is not None:
                     signal.push(function(server.host.paced.simulation))
 
