@@ -150,7 +150,7 @@ def test_run_needs_to_know_which_task(tmp_path: Path, capsys: pytest.CaptureFixt
         folder.mkdir()
         (folder / "m.mod").write_text(GOOD.replace("hello", f"task {number}"))
     assert main(["rapid", "run", str(tmp_path), "--fast"]) == 2
-    assert "choose one by --task: TASK1, TASK2" in capsys.readouterr().err
+    assert "choose with --task: TASK1, TASK2" in capsys.readouterr().err
     assert main(["rapid", "run", str(tmp_path), "--fast", "--task", "T_ROB2"]) == 0
     assert capsys.readouterr().out == "task 2\n"
 
@@ -167,3 +167,47 @@ def test_an_endless_loop_is_named_and_ends_with_ctrl_c(runs: Path) -> None:
         process.send_signal(signal.SIGINT)
         assert process.wait(10) == 130
         assert ": interrupted" in process.stderr.read()
+
+
+def backup(folder: Path, tasks: dict[str, str]) -> Path:
+    """Write a backup of a controller with tasks of these names and lines."""
+    (folder / "BACKINFO").mkdir()
+    names = []
+    for number, (name, lines) in enumerate(tasks.items(), 1):
+        home = folder / "RAPID" / f"TASK{number}" / "PROGMOD"
+        home.mkdir(parents=True)
+        data = 'PERS tasks both{2} := [["T_ROB_R"],["T_ROB_L"]];\nVAR syncident met;\nPERS num n := 0;'
+        (home / f"m{number}.mod").write_text(f"MODULE m{number}\n{data}\nPROC main()\n{lines}\nENDPROC\nENDMODULE\n")
+        names.append(f">>TASK{number}: ({name},,)")
+    (folder / "BACKINFO" / "backinfo.txt").write_text("\n".join(names))
+    return folder
+
+
+def test_tasks_of_a_backup_run_together(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = {"T_ROB_R": "WaitTime 2; n := 7; WaitSyncTask met, both;", "T_ROB_L": "WaitSyncTask met, both;"}
+    command = ["rapid", "run", str(backup(tmp_path, lines)), "--fast", "--save", "--task", "T_ROB_L"]
+    assert main([*command, "--task", "t_rob_r"]) == 0
+    assert capsys.readouterr().err.splitlines()[:2] == [
+        "T_ROB_L main ended after 2.000 s, 0 movements",
+        "T_ROB_R main ended after 2.000 s, 0 movements",
+    ]
+    assert all("PERS num n := 7;" in file.read_text() for file in tmp_path.rglob("*.mod"))
+    assert main(["rapid", "run", str(tmp_path)]) == 2
+    assert "choose with --task: T_ROB_R, T_ROB_L" in capsys.readouterr().err
+    assert main([*command, "--task", "T_ROB_X"]) == 2
+    assert "there is no task 'T_ROB_X'; did you mean 'T_ROB_L' or 'T_ROB_R'?" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_all_tasks(tmp_path: Path) -> None:
+    lines = {"T_ROB_R": 'TPWrite "runs"; WHILE TRUE DO n := n + 1; ENDWHILE', "T_ROB_L": "WaitTime 100;"}
+    command = [sys.executable, "-m", "daidalos.cli.daidalos", "rapid", "run", str(backup(tmp_path, lines))]
+    process = subprocess.Popen(
+        [*command, "--task", "T_ROB_R", "--task", "T_ROB_L"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "runs\n"
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert "m1.mod:6: interrupted" in err

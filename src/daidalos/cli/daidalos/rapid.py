@@ -42,7 +42,12 @@ class RapidVerb:
         _add_program(run)
         run.add_argument("--fast", action="store_true", help="do not let real time pass with the robot's")
         run.add_argument("--save", action="store_true", help="write the values of persistents back into the modules")
-        run.add_argument("--robot", metavar="ARM", help="arm that moves, such as irb120 (default: one without joints)")
+        run.add_argument(
+            "--robot",
+            action="append",
+            metavar="[TASK=]ARM",
+            help="arm that moves, of all tasks or of one, such as irb120 (default: one without joints)",
+        )
         run.add_argument("--sim", action="store_true", help="move the arm of `bringup.launch.py` in the simulator too")
         run.add_argument("--action", metavar="NAME", help="move a real arm by this FollowJointTrajectory action")
         run.set_defaults(_command=_run)
@@ -92,7 +97,13 @@ class RapidVerb:
 def _add_program(parser: argparse.ArgumentParser) -> None:
     """Declare which program runs, and with what around it."""
     parser.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
-    parser.add_argument("--task", metavar="NAME", help="which program of a folder, such as T_ROB1")
+    parser.add_argument(
+        "--task",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="which program of a folder, such as T_ROB1; given several times, they run together",
+    )
     parser.add_argument("--proc", default="main", metavar="NAME", help="procedure to run (default: main)")
     parser.add_argument(
         "--io", type=Path, action="append", default=[], metavar="EIO.cfg", help="configuration that declares signals"

@@ -7,7 +7,8 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any
 
-from daidalos.cli.daidalos.rapid_run import check_output, load_task, run_task, write_output
+from daidalos.cli.daidalos.rapid_loading import load_task
+from daidalos.cli.daidalos.rapid_run import check_output, run_task, write_output
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:

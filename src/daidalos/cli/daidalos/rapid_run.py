@@ -6,16 +6,14 @@ import argparse
 import sys
 import threading
 import time
-from collections.abc import Callable
-from datetime import datetime
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from daidalos.cli.daidalos.launching import INTERRUPTED
+from daidalos.cli.daidalos.rapid_loading import load_task, load_tasks
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
-    from daidalos.industry.rapid.runtime.board import Board
-    from daidalos.industry.rapid.runtime.robot import Robot
     from daidalos.industry.rapid.runtime.task import Outcome, Task
 
 ENDLESS_S = 2.0
@@ -30,12 +28,14 @@ def run_program(args: argparse.Namespace) -> int:
     """Load and run a program; return 0 at its end, 2 after an error, 130 after Ctrl-C."""
     if args.sim or args.action:
         return _run_on_action(args)
-    task = load_task(args, None if args.fast else Pace(), 0.0)
-    if task is None:
+    pace = None if args.fast else Pace()
+    tasks = load_tasks(args, pace, 0.0)
+    if tasks is None:
         return 2
-    status = run_task(task, args)
+    status = run_tasks(tasks, args, pace)
     if args.save:
-        _save(task)
+        for task in tasks.values():
+            _save(task)
     return status
 
 
@@ -112,65 +112,37 @@ def write_output(args: argparse.Namespace, text: str) -> None:
     print(f"wrote {args.output}", file=sys.stderr)
 
 
-def load_task(args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float) -> Task | None:
-    """Return the task that the arguments describe; None, with the reasons printed, where it cannot run."""
-    from daidalos.industry.rapid.inspection import read_signals
-    from daidalos.industry.rapid.runtime.board import Board
+def run_tasks(tasks: dict[str, Task], args: argparse.Namespace, pace: Callable[[float], None] | None) -> int:
+    """Run tasks at the same time, and print how each ended; return the greatest exit status."""
+    from daidalos.industry.rapid.runtime.cell import STOPPED, Cell
     from daidalos.industry.rapid.runtime.errors import FatalError
-    from daidalos.industry.rapid.runtime.loading import choose_program, load_modules
-    from daidalos.industry.rapid.runtime.task import Task
 
-    signals = [name for file in args.io for name in read_signals(file)]
-    program = choose_program(args.path, args.task)
-    modules, checker, blocking = load_modules(program, signals)
-    for report in blocking:
-        for problem in report.errors:
-            print(problem.text(report.file), file=sys.stderr)
-    if blocking:
-        return None
-    board = Board(signals, dict(_parse_signal(text) for text in args.signal))
-    robot = make_robot(args.robot, args.sensor, board, sampling)
+    if len(tasks) == 1:
+        return run_task(next(iter(tasks.values())), args)
     try:
-        home = args.home or (args.path if args.path.is_dir() else args.path.parent)
-        task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time)
+        cell = Cell(tasks, pace)
     except FatalError as error:
         print(f"error: {error}", file=sys.stderr)
-        return None
-    if args.task:
-        task.settings["name"] = args.task
-    return task
+        return 2
+    watch = Watch(list(tasks.values()), cell.running)
+    outcomes = cell.run(args.proc)
+    watch.end()
+    causes = [one for one in outcomes.values() if one.reason in ("error", "interrupted")]
+    statuses = [
+        _report(tasks[name], outcome, f"{name} {args.proc}")
+        for name, outcome in outcomes.items()
+        if not causes or outcome.reason != STOPPED
+    ]
+    return max(statuses)
 
 
 def run_task(task: Task, args: argparse.Namespace) -> int:
     """Run a task, and print how it ended; return the exit status."""
-    watch = Watch(task)
+    main = threading.get_ident()
+    watch = Watch([task], lambda: (task, main))
     outcome = task.run(args.proc)
     watch.end()
     return _report(task, outcome, args.proc)
-
-
-def make_robot(name: str | None, sensors: list[str], board: Board, sampling: float = 0.0) -> Robot | None:
-    """Return the arm of a name, or None without one.
-
-    Raises
-    ------
-    UserError
-        Where no arm has this name, or a sensor is not one.
-    """
-    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
-    from daidalos.industry.rapid.runtime.sensors import parse_sensor
-    from daidalos.industry.robots import arm_named
-
-    if name is None:
-        if sensors:
-            raise UserError("--sensor needs an arm: add --robot, such as --robot irb120")
-        return None
-    try:
-        arm = arm_named(name)
-        conditions = dict(parse_sensor(text) for text in sensors)
-    except ValueError as error:
-        raise UserError(str(error)) from None
-    return ArmRobot(arm, sensors=conditions, set_signal=board.set, sampling=sampling)
 
 
 def _warn(task: Task) -> None:
@@ -181,18 +153,11 @@ def _warn(task: Task) -> None:
             print(f"warning: {warning}", file=sys.stderr)
 
 
-def _parse_signal(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
-    try:
-        return name, float(value)
-    except ValueError:
-        raise UserError(f"'{text}' is no signal; write --signal NAME=VALUE") from None
-
-
 def _report(task: Task, outcome: Outcome, procedure: str) -> int:
     _warn(task)
     if outcome.reason == "error":
-        print(f"error: {outcome.message}", file=sys.stderr)
+        where = f"{task.name}: " if task.cell is not None else ""
+        print(f"error: {where}{outcome.message}", file=sys.stderr)
         for place in outcome.calls[1:]:
             print(f"  called in {place}", file=sys.stderr)
         return 2
@@ -231,11 +196,19 @@ class Pace:
 
 
 class Watch:
-    """Thread that names a loop in which neither time passes nor anything is shown."""
+    """Thread that names a loop in which neither time passes nor anything is shown.
 
-    def __init__(self, task: Task) -> None:
-        self._task = task
-        self._main = threading.get_ident()
+    Parameters
+    ----------
+    tasks
+        The tasks that run.
+    running
+        Returns the task that is being carried out just now, and the identifier of its thread; None while none is.
+    """
+
+    def __init__(self, tasks: Sequence[Task], running: Callable[[], tuple[Task, int] | None]) -> None:
+        self._tasks = tasks
+        self._running = running
         self._ended = threading.Event()
         self._named: set[str] = set()
         threading.Thread(target=self._watch, daemon=True).start()
@@ -247,13 +220,15 @@ class Watch:
     def _watch(self) -> None:
         before = -1
         while not self._ended.wait(ENDLESS_S):
-            if self._task.progress == before:
-                self._name_loop()
-            before = self._task.progress
+            progress = sum(one.progress for one in self._tasks)
+            running = self._running()
+            if progress == before and running is not None:
+                self._name_loop(*running)
+            before = progress
 
-    def _name_loop(self) -> None:
-        place = self._task.place_of_frame(sys._current_frames().get(self._main))
-        if place and place not in self._named and not self._task.is_waiting:
+    def _name_loop(self, task: Task, thread: int) -> None:
+        place = task.place_of_frame(sys._current_frames().get(thread))
+        if place and place not in self._named and not task.is_waiting:
             self._named.add(place)
             text = f"runs for {ENDLESS_S:g} s without motion, waiting or output; Ctrl-C stops it"
             print(f"{place}: warning: the program {text}", file=sys.stderr, flush=True)

@@ -38,6 +38,7 @@ _EASE = 0.7
 
 _MEASURE_STEP = 0.002
 _MOST_MEASURED = 4000
+_FOLLOW_SAMPLES = 1000
 _END = 1e18
 _TICK = 1e-9
 """Time below which there is none left [s]."""
@@ -425,6 +426,34 @@ class Planner:
         """Go on along the path."""
         self.is_stopped = False
         self._is_planned = not self._movements
+
+    def stretch(self, seconds: float) -> None:
+        """Slow a motion that begins now, from rest, so that it takes that time; it never becomes faster."""
+        left = self.remaining()
+        if self._profile is not None and 0.0 < left < seconds < math.inf:
+            self._profile.stretch(self.now, seconds / left)
+            self.version += 1
+
+    def follow(self, other: Planner) -> float:
+        """Move as another arm does that begins its motion now, in proportion to the lengths of both paths.
+
+        Both rest, and each has one movement before it.
+
+        Returns
+        -------
+        float
+            By how much both have to be slowed so that this arm keeps its own limits; 1 where it does.
+        """
+        self._plan()
+        other._plan()
+        if self._profile is None or other._profile is None:
+            return 1.0
+        start, begin = self._movements[0].offset, other._movements[0].offset
+        share = (self._length - start) / (other._length - begin)
+        self._profile = other._profile.copy_for(self.now, start, other.now, share)
+        self.version += 1
+        times = self.now + np.linspace(0.0, self._profile.end_time - self.now, _FOLLOW_SAMPLES)
+        return math.sqrt(max(1.0, float(self._ratios(times).max())))
 
     def clear(self) -> None:
         """Forget the path behind the point in which the arm rests."""

@@ -84,6 +84,25 @@ class Profile:
             self._integrals = np.append(self._integrals[:kept], integral)
         return position + self._origin, speed
 
+    def stretch(self, time: float, factor: float) -> None:
+        """Slow all that comes after a time, at which the motion rests, by a factor of 1 or more."""
+        self._times = time + (self._times - time) * factor
+        self._speeds = self._speeds / factor
+        self._integrals = self._integrals[0] + (self._integrals - self._integrals[0]) * factor
+        self.ramp_time *= factor
+
+    def copy_for(self, start_time: float, start: float, time: float, factor: float) -> Profile:
+        """Return the same motion for another path: from a time on, at which it rests, with all ways times a factor."""
+        other = Profile(start_time, start, self.ramp_time)
+        first = int(np.searchsorted(self._times, time - 1e-12))
+        other._times = start_time + (self._times[first:] - time)
+        other._positions = (self._positions[first:] - self._positions[first]) * factor
+        other._speeds = self._speeds[first:] * factor
+        lengths = self._times[first:] - self._times[first]
+        areas = self._integrals[first:] - self._integrals[first] - self._positions[first] * lengths
+        other._integrals = areas * factor
+        return other
+
     def forget(self, time: float) -> None:
         """Forget what no mean at a time or later needs."""
         first = int(np.searchsorted(self._times, time - self.ramp_time, side="right")) - 2

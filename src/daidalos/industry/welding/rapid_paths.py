@@ -34,12 +34,12 @@ def read_rapid(path: Path, procedure: str = "main") -> tuple[NDArray[np.float64]
         Where the program has errors, or does not end.
     """
     from daidalos.industry.rapid.runtime.errors import FatalError
-    from daidalos.industry.rapid.runtime.loading import choose_program, load_modules
+    from daidalos.industry.rapid.runtime.loading import choose_programs, load_modules
     from daidalos.industry.rapid.runtime.pendant import TextPendant
     from daidalos.industry.rapid.runtime.robot import SimpleRobot
     from daidalos.industry.rapid.runtime.task import Task
 
-    modules, checker, blocking = load_modules(choose_program(path, None))
+    modules, checker, blocking = load_modules(next(iter(choose_programs(path).values())))
     if blocking:
         raise UserError(blocking[0].errors[0].text(blocking[0].file))
     robot = SimpleRobot()

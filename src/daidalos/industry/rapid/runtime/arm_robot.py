@@ -20,7 +20,7 @@ from daidalos.industry.motion.pieces import Limits, sample_curve, sample_wrist_p
 from daidalos.industry.motion.planner import Movement, Planner
 from daidalos.industry.rapid.runtime.errors import FatalError
 from daidalos.industry.rapid.runtime.poses import Pose, pose_inverse, pose_product
-from daidalos.industry.rapid.runtime.robot import Event, Move, wobj_pose
+from daidalos.industry.rapid.runtime.robot import Event, Move, Robot, wobj_pose
 from daidalos.industry.robots import Arm
 
 MM = 1e-3
@@ -242,6 +242,17 @@ class ArmRobot:
     def resume(self) -> None:
         """Go on along the path."""
         self.planner.resume()
+
+    def stretch(self, seconds: float) -> None:
+        """Make the movement that begins now take so long, where it would take less."""
+        self.planner.stretch(seconds)
+
+    def follow(self, leader: Robot) -> float:
+        """Move in proportion to another arm; take as long as a robot without joints."""
+        if isinstance(leader, ArmRobot):
+            return self.planner.follow(leader.planner)
+        self.stretch(leader.remaining())
+        return 1.0
 
     def clear(self) -> None:
         """Forget the rest of the path."""

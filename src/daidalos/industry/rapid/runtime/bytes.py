@@ -150,19 +150,7 @@ def is_controller(task: Task) -> bool:
     return False
 
 
-@routine("TaskRunRob", "TaskRunMec")
-def has_robot(task: Task) -> bool:
-    """Return whether this task moves a robot."""
-    return True
-
-
-@routine("GetTaskName")
-def task_name(task: Task, **rest: Any) -> str:
-    """Return the name of the task."""
-    return str(task.settings.get("name", "T_ROB1"))
-
-
-@routine("IsSyncMoveOn", "IsStopMoveAct", "IsLeadThrough", "IsBrakeCheckActive")
+@routine("IsStopMoveAct", "IsLeadThrough", "IsBrakeCheckActive")
 def is_off(task: Task, **rest: Any) -> bool:
     """Return FALSE: what it asks for is off."""
     return False

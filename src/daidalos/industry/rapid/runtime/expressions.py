@@ -235,6 +235,8 @@ class ExpressionTranslator:
         if is_signal and isinstance(value, tree.Variable):
             place = self.place(value.name)
             return place.read() if place is not None else repr(value.name.text)
+        if name == "syncident" and not is_own and isinstance(value, tree.Variable):
+            return repr(value.name.key)  # tasks meet by its name
         if parameter.mode in ("VAR", "PERS", "INOUT"):
             return self.reference(value)
         return self.copy(value) if is_own else self.read(value)

@@ -99,6 +99,8 @@ class Interrupts:
     def _occur(self, number: float, one: Interrupt) -> None:
         if not one.is_asleep:
             self._queue.append(number)
+            if self._task.cell is not None:
+                self._task.cell.wake(self._task)
 
 
 @routine("ITimer")

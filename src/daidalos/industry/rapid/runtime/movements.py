@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ from daidalos.industry.rapid.runtime.poses import normalized, pose_inverse, pose
 from daidalos.industry.rapid.runtime.positions import WOBJ0
 from daidalos.industry.rapid.runtime.registry import routine
 from daidalos.industry.rapid.runtime.robot import Event, MotionSettings, Move
+from daidalos.industry.rapid.runtime.synchronising import order_together, together
 
 if TYPE_CHECKING:
     from daidalos.industry.rapid.runtime.task import Task
@@ -35,6 +37,7 @@ def order(
     z: float | None = None,
     events: tuple[Event, ...] = (),
     waits: bool = True,
+    number: float | None = None,
 ) -> None:
     """Order a movement, and let time pass until the program may go on, where it waits for that."""
     zone = FINE if zone is None else zone
@@ -50,10 +53,18 @@ def order(
     settings = motion_settings(task)
     move = Move(instruction, target, speed, zone, tool, wobj, via, t, task.line(), settings, events)
     task.settings["tool"], task.settings["wobj"] = tool, wobj
-    while not task.robot.order(move):
+    if together(task) is not None:
+        order_together(task, replace(move, zone=FINE), number)
+        return
+    while not _is_taken(task, move):
         task.wait_for_robot(task.robot.remaining)
     if waits:
         task.wait_for_robot(task.robot.remaining if zone[0] else task.robot.room)
+
+
+def _is_taken(task: Task, move: Move) -> bool:
+    with task.waiting():
+        return task.robot.order(move)
 
 
 def _scaled(task: Task, speed: list[float]) -> list[float]:
@@ -77,93 +88,55 @@ def _displaced(task: Task, target: list[Any]) -> list[Any]:
     return [moved[0], moved[1], target[2], target[3]]
 
 
-@routine("MoveL")
-def move_l(
+def _movement(name: str, instruction: str) -> None:
+    """Register an instruction that moves; with a signal or a procedure, it is set or called at the movement's end."""
+
+    @routine(name)
+    def move(
+        task: Task,
+        speed_: list[float],
+        tool_: list[Any],
+        topoint_: list[Any] | None = None,
+        tojointpos_: list[Any] | None = None,
+        cirpoint_: list[Any] | None = None,
+        zone_: list[Any] | None = None,
+        wobj_: list[Any] | None = None,
+        v_: float | None = None,
+        t_: float | None = None,
+        z_: float | None = None,
+        id_: float | None = None,
+        **rest: Any,
+    ) -> None:
+        target = topoint_ if topoint_ is not None else tojointpos_
+        assert target is not None
+        events = _at_end(task, **rest)
+        order(task, instruction, target, speed_, zone_, tool_, wobj_, cirpoint_, v_, t_, z_, events, number=id_)
+
+    move.__doc__ = f"Carry out {name}."
+
+
+def _at_end(
     task: Task,
-    topoint_: list[Any],
-    speed_: list[float],
-    tool_: list[Any],
-    zone_: Any = None,
-    wobj_: Any = None,
-    v_: float | None = None,
-    t_: float | None = None,
-    z_: float | None = None,
+    signal_: Any = None,
+    value_: float | None = None,
+    dvalue_: float | None = None,
+    procname_: str | None = None,
     **rest: Any,
-) -> None:
-    """Move along a line."""
-    order(task, "MoveL", topoint_, speed_, zone_, tool_, wobj_, None, v_, t_, z_)
+) -> tuple[Event, ...]:
+    """Return what MoveLDO, MoveLSync and the like do at the end of a movement, or in the middle of its corner path."""
+    if procname_ is not None:
+        return (Event(functools.partial(task.call_late, procname_, [])),)
+    if signal_ is None:
+        return ()
+    value = value_ if value_ is not None else dvalue_ if dvalue_ is not None else 0.0
+    task.signals.value(signal_)
+    return (Event(functools.partial(task.signals.set, signal_, float(value))),)
 
 
-@routine("MoveJ")
-def move_j(
-    task: Task,
-    topoint_: list[Any],
-    speed_: list[float],
-    tool_: list[Any],
-    zone_: Any = None,
-    wobj_: Any = None,
-    v_: float | None = None,
-    t_: float | None = None,
-    z_: float | None = None,
-    **rest: Any,
-) -> None:
-    """Move by the joints."""
-    order(task, "MoveJ", topoint_, speed_, zone_, tool_, wobj_, None, v_, t_, z_)
-
-
-@routine("MoveC")
-def move_c(
-    task: Task,
-    cirpoint_: list[Any],
-    topoint_: list[Any],
-    speed_: list[float],
-    tool_: list[Any],
-    zone_: Any = None,
-    wobj_: Any = None,
-    v_: float | None = None,
-    t_: float | None = None,
-    z_: float | None = None,
-    **rest: Any,
-) -> None:
-    """Move along a circle."""
-    order(task, "MoveC", topoint_, speed_, zone_, tool_, wobj_, cirpoint_, v_, t_, z_)
-
-
-@routine("MoveAbsJ")
-def move_abs_j(
-    task: Task,
-    tojointpos_: list[Any],
-    speed_: list[float],
-    tool_: list[Any],
-    zone_: Any = None,
-    wobj_: Any = None,
-    v_: float | None = None,
-    t_: float | None = None,
-    z_: float | None = None,
-    **rest: Any,
-) -> None:
-    """Move to joint positions."""
-    order(task, "MoveAbsJ", tojointpos_, speed_, zone_, tool_, wobj_, None, v_, t_, z_)
-
-
-@routine("MoveLDO", "MoveLAO", "MoveLGO")
-def move_l_signal(
-    task: Task, topoint_: Any, speed_: Any, zone_: Any, tool_: Any, signal_: str, value_: Any = None, **rest: Any
-) -> None:
-    """Move along a line, and set a signal at its end."""
-    order(task, "MoveL", topoint_, speed_, zone_, tool_, rest.get("wobj_"), None, None, rest.get("t_"))
-    task.signals.set(signal_, float(value_ if value_ is not None else rest.get("dvalue_") or 0.0))
-    task.pass_time(0.0)
-
-
-@routine("MoveJDO", "MoveJAO", "MoveJGO")
-def move_j_signal(
-    task: Task, topoint_: Any, speed_: Any, zone_: Any, tool_: Any, signal_: str, value_: Any = None, **rest: Any
-) -> None:
-    """Move by the joints, and set a signal at the end."""
-    order(task, "MoveJ", topoint_, speed_, zone_, tool_, rest.get("wobj_"), None, None, rest.get("t_"))
-    task.signals.set(signal_, float(value_ if value_ is not None else rest.get("dvalue_") or 0.0))
-    task.pass_time(0.0)
+for _instruction in ("MoveL", "MoveJ", "MoveC"):
+    for _what in ("", "DO", "AO", "GO", "Sync"):
+        _movement(f"{_instruction}{_what}", _instruction)
+_movement("MoveAbsJ", "MoveAbsJ")
 
 
 @routine("VelSet")

@@ -17,10 +17,20 @@ Implementation = TypeVar("Implementation", bound=Callable[..., Any])
 _routines: dict[str, Callable[..., Any]] = {}
 _MODULES = (
     "mathematics", "strings", "positions", "signals", "dialogs", "timing", "movements", "interrupts", "bytes", "files",
-    "sockets", "triggers", "searches",
+    "sockets", "triggers", "searches", "synchronising",
 )  # fmt: skip
 _TIMED = ("signals", "dialogs", "timing", "interrupts", "files", "sockets")
-_TIMED_ROUTINES = ("crobt", "cjointt", "cpos", "pdispon", "stopmove", "startmove", "stopmovereset", "clearpath")
+_TIMED_ROUTINES = (
+    "crobt",
+    "cjointt",
+    "cpos",
+    "pdispon",
+    "stopmove",
+    "startmove",
+    "stopmovereset",
+    "clearpath",
+    "waitsynctask",
+)
 
 
 def routine(*names: str) -> Callable[[Implementation], Implementation]:

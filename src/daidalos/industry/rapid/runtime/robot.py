@@ -154,6 +154,20 @@ class Robot(Protocol):
         """Forget the rest of the path, where the robot stands."""
         ...
 
+    def stretch(self, seconds: float) -> None:
+        """Make the movement that begins now take so long, where it would take less."""
+        ...
+
+    def follow(self, leader: Robot) -> float:
+        """Move in proportion to another robot, whose movement begins now too and takes longer.
+
+        Returns
+        -------
+        float
+            By how much both have to be slowed, 1 or more.
+        """
+        ...
+
     def robtarget(self, tool: list[Any], wobj: list[Any]) -> list[Any]:
         """Return where the robot is."""
         ...
@@ -241,6 +255,17 @@ class SimpleRobot:
     def resume(self) -> None:
         """Go on."""
         self._is_stopped = False
+
+    def stretch(self, seconds: float) -> None:
+        """Make the movement that begins now take so long."""
+        if 0.0 < self._left < seconds:
+            self._events = [(before * seconds / self._left, one) for before, one in self._events]
+            self._left = seconds
+
+    def follow(self, leader: Robot) -> float:
+        """Take as long as another robot."""
+        self.stretch(leader.remaining())
+        return 1.0
 
     def clear(self) -> None:
         """Forget the rest of the movement."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 from types import FrameType, TracebackType
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from daidalos.common.suggestions import hint
 from daidalos.industry.rapid import predefined, tree
@@ -42,6 +42,9 @@ from daidalos.industry.rapid.runtime.translation import FILE, Translation, trans
 from daidalos.industry.rapid.runtime.values import copied, counted, default_value, index_of
 from daidalos.industry.rapid.symbols import DataSymbol, Owned, RoutineSymbol, Type
 from daidalos.industry.rapid.types import TypeTable
+
+if TYPE_CHECKING:
+    from daidalos.industry.rapid.runtime.cell import Cell
 
 MAX_RETRIES = 4
 STOPPED_POLL = 0.05
@@ -126,6 +129,9 @@ class Task:
         self.errno = 0.0
         self.intno = 0.0
         self.settings: dict[str, Any] = {}
+        self.name = "T_ROB1"
+        self.cell: Cell | None = None
+        """The tasks that run at the same time."""
         self._pace = pace
         self._checker = checker
         self._translation: Translation = translate(modules, checker)
@@ -170,15 +176,20 @@ class Task:
             return Outcome("error", message, self.time, self._calls(error))
         return Outcome("end", "", self.time)
 
-    def pass_time(self, seconds: float) -> None:
-        """Advance robot time, and run the traps and events that fall due in it."""
+    def pass_time(self, seconds: float, is_poll: bool = False) -> None:
+        """Advance robot time, and run the traps and events that fall due in it.
+
+        A task that polls a condition goes on earlier where another task has changed a signal, or has come to meet it.
+        """
         end = self.time + max(seconds, 0.0)
         self.progress += 1
-        while (due := self._next_time()) is not None and due <= end:
-            self._advance(due)
+        while True:
+            due = self._next_time()
+            is_last = due is None or due > end
+            self._advance(end if due is None else min(due, end))
             self._serve()
-        self._advance(end)
-        self._serve()
+            if (is_last and self.time >= end) or (is_poll and self.time < end and self.cell is not None):
+                return
 
     def _next_time(self) -> float | None:
         event = self.robot.next_event()
@@ -197,12 +208,26 @@ class Task:
         FatalError
             Where the robot is stopped, and nothing is left that could start it.
         """
+        if self.cell is not None:
+            self.cell.is_active(self)
         while (seconds := left()) > 0.0:
             if math.isinf(seconds):
-                if self.interrupts.next_time() is None and not self.settings.get("is_live"):
-                    raise FatalError("the movement is stopped, and nothing is left that could start it; use StartMove")
+                self.expect_change("the movement is stopped, and nothing is left that could start it; use StartMove")
                 seconds = STOPPED_POLL
             self.pass_time(seconds)
+
+    def expect_change(self, what: str) -> None:
+        """Check that timers, the world outside or another task can change what the task waits for.
+
+        Raises
+        ------
+        FatalError
+            Where there is none of them; with the message.
+        """
+        if self.interrupts.next_time() is not None or self.settings.get("is_live"):
+            return
+        if self.cell is None or not self.cell.can_change(self):
+            raise FatalError(what)
 
     def catch_up(self) -> None:
         """Advance time until instructions run that come behind the latest movement; a trap does not wait."""
@@ -220,11 +245,14 @@ class Task:
             raise ProgramEnd("its time limit")
         if time <= self.time:
             return
-        if self._pace is not None:
+        if self.cell is not None:
+            time = self.cell.sleep(self, time)
+        elif self._pace is not None:
             self.is_waiting = True
             self._pace(time - self.time)
             self.is_waiting = False
-        self.robot.advance(time - self.time)
+        with self.waiting():
+            self.robot.advance(time - self.time)
         self.time = time
 
     def ask(self, text: str, choices: Sequence[str] = ()) -> str:
@@ -234,12 +262,12 @@ class Task:
 
     @contextlib.contextmanager
     def waiting(self) -> Iterator[None]:
-        """Mark that the program waits for someone else."""
-        self.is_waiting = True
+        """Mark that the program waits for someone else, or for the plan of a movement."""
+        before, self.is_waiting = self.is_waiting, True
         try:
             yield
         finally:
-            self.is_waiting = False
+            self.is_waiting = before
 
     # Called by the translated program
 
@@ -322,6 +350,14 @@ class Task:
         return self.place_of(frame.f_lineno) if frame is not None else ""
 
     # Data
+
+    def read(self, key: str) -> Any:
+        """Return the value of data by its name in the translated program."""
+        return self._namespace[key]
+
+    def write(self, key: str, value: Any) -> None:
+        """Replace the value of data by its name in the translated program."""
+        self._namespace[key] = value
 
     def value(self, name: str) -> Any:
         """Return the value of data of a module by its name."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
-from daidalos.industry.rapid.runtime.errors import FatalError, ProgramEnd, RapidError
+from daidalos.industry.rapid.runtime.errors import ProgramEnd, RapidError
 from daidalos.industry.rapid.runtime.registry import routine
 
 if TYPE_CHECKING:
@@ -17,26 +17,35 @@ POLL = 0.1
 """Seconds between two looks at a condition that is waited for."""
 
 
-def wait_for(task: Task, holds: Callable[[], bool], what: str, max_time: float | None, flag: Any) -> None:
+def wait_for(
+    task: Task,
+    holds: Callable[[], bool],
+    what: str,
+    max_time: float | None,
+    flag: Any,
+    error: str = "ERR_WAIT_MAXTIME",
+) -> None:
     """Advance time until a condition holds.
 
     Raises
     ------
     RapidError
-        ERR_WAIT_MAXTIME, where it does not hold in the time that is given, and the program has no flag for that.
+        The error, where it does not hold in the time that is given, and the program has no flag for that.
     FatalError
         Where nothing is left that could make it hold.
     """
     end = task.time + max_time if max_time is not None and max_time < 9e8 else None
+    if task.cell is not None:
+        task.cell.is_active(task)
     while not holds():
-        if end is None and task.interrupts.next_time() is None and not task.settings.get("is_live"):
-            raise FatalError(f"waits for {what} for ever: nothing else is left that could change it")
-        if end is not None and task.time >= end:
+        if end is None:
+            task.expect_change(f"waits for {what} for ever: nothing else is left that could change it")
+        elif task.time >= end:
             if flag is None:
-                raise RapidError("ERR_WAIT_MAXTIME", f"waited {max_time:g} s for {what}")
+                raise RapidError(error, f"waited {max_time:g} s for {what}")
             flag[0][flag[1]] = True
             return
-        task.pass_time(POLL if end is None else min(POLL, end - task.time))
+        task.pass_time(POLL if end is None else min(POLL, end - task.time), is_poll=True)
     if flag is not None:
         flag[0][flag[1]] = False
 

@@ -1,0 +1,104 @@
+"""Programs, signals and robots of `daidalos rapid run`, `trace`, `draw` and `debug`, from their arguments."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+from daidalos.common.errors import UserError
+
+if TYPE_CHECKING:
+    from daidalos.industry.rapid.runtime.board import Board
+    from daidalos.industry.rapid.runtime.robot import Robot
+    from daidalos.industry.rapid.runtime.task import Task
+
+
+def load_task(args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float) -> Task | None:
+    """Return the task that the arguments describe; None, with the reasons printed, where it cannot run.
+
+    Raises
+    ------
+    UserError
+        Where several tasks are named.
+    """
+    if len(args.task) > 1:
+        raise UserError("this runs one task; name one with --task")
+    tasks = load_tasks(args, pace, sampling)
+    return next(iter(tasks.values())) if tasks else None
+
+
+def load_tasks(
+    args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float
+) -> dict[str, Task] | None:
+    """Return the tasks that the arguments describe; None, with the reasons printed, where one cannot run."""
+    from daidalos.industry.rapid.inspection import read_signals
+    from daidalos.industry.rapid.runtime.board import Board
+    from daidalos.industry.rapid.runtime.errors import FatalError
+    from daidalos.industry.rapid.runtime.loading import choose_programs, load_modules
+    from daidalos.industry.rapid.runtime.task import Task
+
+    signals = [name for file in args.io for name in read_signals(file)]
+    programs = choose_programs(args.path, args.task)
+    board = Board(signals, dict(_parse_signal(text) for text in args.signal))
+    home = args.home or (args.path if args.path.is_dir() else args.path.parent)
+    tasks: dict[str, Task] = {}
+    for name, program in programs.items():
+        modules, checker, blocking = load_modules(program, signals)
+        for report in blocking:
+            for problem in report.errors:
+                print(problem.text(report.file), file=sys.stderr)
+        if blocking:
+            return None
+        robot = make_robot(arm_of(args.robot, name), args.sensor, board, sampling)
+        try:
+            task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time)
+        except FatalError as error:
+            print(f"error: {error}", file=sys.stderr)
+            return None
+        task.name = name
+        tasks[name] = task
+    return tasks
+
+
+def arm_of(arms: str | Sequence[str] | None, task: str) -> str | None:
+    """Return the arm of a task: each of the texts is an arm of all tasks, or TASK=ARM."""
+    given = [arms] if isinstance(arms, str) else list(arms or ())
+    pairs = [one.rpartition("=")[::2] for one in given]
+    own = [arm for name, arm in pairs if name.upper() == task.upper()]
+    common = [arm for name, arm in pairs if not name]
+    return next(iter([*own, *common]), None)
+
+
+def make_robot(name: str | None, sensors: list[str], board: Board, sampling: float = 0.0) -> Robot | None:
+    """Return the arm of a name, or None without one.
+
+    Raises
+    ------
+    UserError
+        Where no arm has this name, or a sensor is not one.
+    """
+    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+    from daidalos.industry.rapid.runtime.sensors import parse_sensor
+    from daidalos.industry.robots import arm_named
+
+    if name is None:
+        if sensors:
+            raise UserError("--sensor needs an arm: add --robot, such as --robot irb120")
+        return None
+    try:
+        arm = arm_named(name)
+        conditions = dict(parse_sensor(text) for text in sensors)
+    except ValueError as error:
+        raise UserError(str(error)) from None
+    return ArmRobot(arm, sensors=conditions, set_signal=board.set, sampling=sampling)
+
+
+def _parse_signal(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise UserError(f"'{text}' is no signal; write --signal NAME=VALUE") from None
