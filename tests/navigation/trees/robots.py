@@ -99,7 +99,7 @@ def stamped(x, y=0.0, sec=0):
 
 
 def path_of(*places):
-    """A path over places on the x axis."""
-    path = Path(poses=[stamped(x) for x in places])
+    """A path over places on the map, on its x axis where they are numbers."""
+    path = Path(poses=[stamped(*place) if isinstance(place, tuple) else stamped(place) for place in places])
     path.header.frame_id = "map"
     return path
