@@ -5,18 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from subprocess import Popen, TimeoutExpired
 from typing import TYPE_CHECKING, TypeVar
 
 from daidalos.nodes.runner import UserError, create, ignore_interrupts, program_arguments, run, run_program
 from daidalos.studio.arrangement import Arrangement, ArrangementError
+from daidalos.studio.guarded_server import LOOPBACK
 from daidalos.studio.ports import PortError
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
     NodeT = TypeVar("NodeT", bound=Node)
+
+END_S = 3.0
 
 
 def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callable[[NodeT], Mapping[str, str]]) -> int:
@@ -83,7 +87,15 @@ def show(url: str, *, open_it: bool = True) -> None:
 
 
 def run_studio(
-    name: str, panel: str, arguments: argparse.Namespace, arrangement: Arrangement | None = None, **details: str
+    name: str,
+    panel: str,
+    arguments: argparse.Namespace,
+    arrangement: Arrangement | None = None,
+    *,
+    front: str = "",
+    hosts: Sequence[str] = LOOPBACK,
+    companion: Sequence[str] | None = None,
+    **details: str,
 ) -> int:
     """Open the studio at a panel, and serve it until the process is asked to end.
 
@@ -97,6 +109,12 @@ def run_studio(
         Parsed by a parser of `studio_parser`.
     arrangement
         The layout with which the page opens; None: the page's default.
+    front
+        The panel of the whole studio that is in front; only where `panel` is empty.
+    hosts
+        Addresses to listen on.
+    companion
+        Command line of a program that runs as long as the studio; None: there is none.
     **details
         Further query parameters of the address.
 
@@ -115,18 +133,32 @@ def run_studio(
         def __init__(self) -> None:
             super().__init__(name)
             try:
-                self._studio = Studio(self, arguments.port, arrangement=arrangement)
+                self._studio = Studio(self, arguments.port, hosts, arrangement=arrangement)
             except PortError as error:
                 super().destroy_node()
                 raise UserError(str(error)) from None
-            show(self._studio.url(panel, **details), open_it=not arguments.headless)
+            self._studio.warn_of_exposure(self)
+            self._companion = Popen(companion) if companion else None
+            show(self._studio.url(panel, front, **details), open_it=not arguments.headless)
 
         def destroy_node(self) -> None:
-            """Close the page's connections and leave the graph."""
+            """End the companion, close the page's connections and leave the graph."""
+            if self._companion is not None:
+                end(self._companion)
             self._studio.close()
             super().destroy_node()
 
     return run(Window)
+
+
+def end(process: Popen[bytes]) -> None:
+    """End a program that obeys SIGTERM; kill it where it does not within `END_S` seconds."""
+    process.terminate()
+    try:
+        process.wait(END_S)
+    except TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def read_arrangement(

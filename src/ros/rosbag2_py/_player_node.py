@@ -82,6 +82,7 @@ class PlayerNode(Node):
         self._finished = threading.Event()
         self.error: BagError | None = None
         self._create_publishers()
+        self._declare_range()
         self.get_logger().info(f"Set rate to {options.rate:g}")
 
     def _set_limits(self) -> None:
@@ -97,6 +98,13 @@ class PlayerNode(Node):
             self._stop = self._start + round(options.playback_duration * _SECOND)
         if options.playback_until_timestamp >= 0:
             self._stop = min(self._stop, options.playback_until_timestamp)
+
+    def _declare_range(self) -> None:
+        """Declare read-only parameters with the bag's first and last time, for who shows how far it was played."""
+        from rcl_interfaces.msg import ParameterDescriptor
+
+        for name, time_ns in (("bag_start_ns", self._start), ("bag_end_ns", self.end_ns)):
+            self.declare_parameter(name, time_ns, ParameterDescriptor(read_only=True))
 
     def _create_publishers(self) -> None:
         from rosbag2_interfaces.msg import ReadSplitEvent

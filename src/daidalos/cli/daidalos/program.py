@@ -26,6 +26,7 @@ _DESCRIPTIONS = {
     "rapid": "Check, format, run, trace and write programs of ABB robots",
     "scenario": "Run scenarios in lock-step, and look at those that failed",
     "sim": "Simulate a world",
+    "studio": "Open the studio on the graph, on a bag, with a layout or at a panel",
     "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",
     "weld": "Correct the paths of welding robots for their elasticity",
 }

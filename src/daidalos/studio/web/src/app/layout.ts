@@ -27,6 +27,7 @@ const KEY = "layout";
 const THEME = { name: "daidalos", className: "dockview-theme-daidalos", gap: 6 };
 const DISPLAYS_NARROW_PX = 250;
 const IMAGE_PX = 300;
+const BAG_PLAYER_PX = 120;
 /** What the ids of panels of displays begin with. */
 const PICTURE = "display:";
 
@@ -310,6 +311,9 @@ export class Layout {
       ["displays", "topics", "message"].forEach((id) => add(id, "scene"));
       scene.api.setActive();
       return;
+    }
+    if (this.front?.id === "bag_player") {
+      add("bag_player", "scene", "below").api.setSize({ height: BAG_PLAYER_PX });
     }
     const isSimulation = this.front?.id === "simulation";
     const displays = add(isSimulation ? "entities" : "displays", "scene", "left");
