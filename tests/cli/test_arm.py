@@ -52,3 +52,28 @@ def test_what_is_wrong_is_one_line(arguments, message, capsys):
     error = capsys.readouterr().err
     assert message in error
     assert "Traceback" not in error
+
+
+def test_an_arm_with_seven_axes_is_shown_with_its_arm_angle(capsys):
+    assert main(["arm", "forward", "irb14000", *["20"] * 7]) == 0
+    assert capsys.readouterr().out.endswith("arm angle 6.857 deg\n")
+    assert main(["arm", "inverse", "irb14000", "300", "100", "300", "0", "0", "1", "0", "--arm-angle", "60"]) == 0
+    assert capsys.readouterr().out.splitlines()[1].split()[0] == "60.000"
+    assert main(["arm", "show", "irb14000"]) == 0
+    assert "order of the axes from the base: 1, 2, 7, 3, 4, 5, 6" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["forward", "irb14000", "1", "2"], "has 7 axes, not 2: axes 1 to 6, then axis 7"),
+        (["forward", "irb120", "1", "2"], "ABB IRB 120-3/0.6 has 6 axes, not 2"),
+        (["inverse", "irb14000", "900", "0", "0", "1", "0", "0", "0"], "no solution was found within the ranges"),
+        (["inverse", "irb120", *"0001000", "--arm-angle", "1"], "--arm-angle goes with an arm that has seven axes"),
+    ],
+)
+def test_what_is_wrong_with_seven_axes_is_one_line(arguments, message, capsys):
+    assert main(["arm", *arguments]) != 0
+    error = capsys.readouterr().err
+    assert message in error
+    assert len(error.splitlines()) == 1

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from daidalos.industry.robots import Arm
+    from daidalos.industry.robots.redundant import RedundantArm
 
 _QUATERNION_TOLERANCE = 1e-3
 """Deviation of a quaternion's length from 1 up to which it is normalised: RAPID programs print six digits."""
@@ -28,14 +29,17 @@ class ArmVerb:
         show = commands.add_parser("show", help="print dimensions, ranges and speeds of an arm")
         show.add_argument("arm", metavar="ARM", help="such as irb120")
         show.set_defaults(_command=_show)
-        forward = commands.add_parser("forward", help="print the pose and the configuration of six angles")
+        forward = commands.add_parser("forward", help="print the pose and the configuration of angles")
         forward.add_argument("arm", metavar="ARM", help="such as irb120")
-        forward.add_argument("angles", type=_finite, nargs=6, metavar="DEG", help="angles of axes 1 to 6 [deg]")
+        forward.add_argument("angles", type=_finite, nargs="+", metavar="DEG", help="angles of axes 1 to 6 or 7 [deg]")
         forward.set_defaults(_command=_forward)
         inverse = commands.add_parser("inverse", help="print all solutions of a pose of the flange")
         inverse.add_argument("arm", metavar="ARM", help="such as irb120")
         inverse.add_argument("position", type=_finite, nargs=3, metavar="MM", help="position in the base [mm]")
         inverse.add_argument("orientation", type=_finite, nargs=4, metavar="Q", help="quaternion q1 (real) to q4")
+        inverse.add_argument(
+            "--arm-angle", type=_finite, metavar="DEG", help="arm angle of an arm with seven axes (default: any)"
+        )
         inverse.set_defaults(_command=_inverse)
 
     def main(self, *, args: argparse.Namespace) -> int:
@@ -55,15 +59,21 @@ def _finite(text: str) -> float:
 
 
 def _list(args: argparse.Namespace) -> None:
-    from daidalos.industry.robots import ARMS
+    from daidalos.industry.robots import ARMS, REDUNDANT_ARMS
 
-    for arm in ARMS.values():
+    arms: list[Arm | RedundantArm] = [*ARMS.values(), *REDUNDANT_ARMS.values()]
+    for arm in arms:
         print(f"{arm.name:10} {arm.title:24} {arm.payload:g} kg, reach {arm.reach:.2f} m")
 
 
 def _show(args: argparse.Namespace) -> None:
-    from daidalos.industry.robots import arm_named
+    from daidalos.industry.robots import REDUNDANT_ARMS, arm_named
 
+    if args.arm.lower() in REDUNDANT_ARMS:
+        from daidalos.cli.daidalos.redundant_arm import show
+
+        show(REDUNDANT_ARMS[args.arm.lower()])
+        return
     arm = arm_named(args.arm)
     print(f"{arm.title}: payload {arm.payload:g} kg, mass {arm.mass:g} kg")
     for title, name in (
@@ -82,13 +92,20 @@ def _forward(args: argparse.Namespace) -> None:
 
     from daidalos.common.pose3 import Pose
     from daidalos.industry.motion.kinematics import confdata, forward, within_limits
-    from daidalos.industry.robots import arm_named
+    from daidalos.industry.robots import REDUNDANT_ARMS, arm_named
 
+    if args.arm.lower() in REDUNDANT_ARMS:
+        from daidalos.cli.daidalos.redundant_arm import print_pose
+
+        print_pose(REDUNDANT_ARMS[args.arm.lower()], args.angles)
+        return
     arm, angles = arm_named(args.arm), np.radians(args.angles)
+    if len(angles) != len(arm.axes):
+        raise ValueError(f"{arm.title} has {len(arm.axes)} axes, not {len(angles)}")
     pose = Pose.from_matrix(forward(arm, angles))
     x, y, z, w = (value if pose.orientation[3] >= 0.0 else -value for value in pose.orientation)
-    position = ", ".join(_rounded(1e3 * value, 3) for value in pose.position)
-    orientation = ", ".join(_rounded(value, 6) for value in (w, x, y, z))
+    position = ", ".join(rounded(1e3 * value, 3) for value in pose.position)
+    orientation = ", ".join(rounded(value, 6) for value in (w, x, y, z))
     configuration = ", ".join(str(value) for value in confdata(arm, angles))
     print(
         f"[[{position}], [{orientation}], [{configuration}]]{_remarks(arm, angles, bool(within_limits(arm, angles)))}"
@@ -100,14 +117,25 @@ def _inverse(args: argparse.Namespace) -> None:
 
     from daidalos.common.pose3 import Pose, normalize
     from daidalos.industry.motion.kinematics import confdata, inverse
-    from daidalos.industry.robots import arm_named
+    from daidalos.industry.robots import REDUNDANT_ARMS, arm_named
 
-    arm = arm_named(args.arm)
+    redundant = REDUNDANT_ARMS.get(args.arm.lower())
+    if redundant is None and args.arm_angle is not None:
+        raise ValueError(f"--arm-angle goes with an arm that has seven axes, such as {next(iter(REDUNDANT_ARMS))}")
+    if redundant is None:
+        arm_named(args.arm)
     w, x, y, z = args.orientation
     if abs(math.hypot(w, x, y, z) - 1.0) > _QUATERNION_TOLERANCE:
         raise ValueError(f"the quaternion has the length {math.hypot(w, x, y, z):.4g}, but must have 1")
     position = tuple(1e-3 * value for value in args.position)
-    solutions = inverse(arm, Pose(position, normalize((x, y, z, w))).matrix)
+    pose = Pose(position, normalize((x, y, z, w))).matrix
+    if redundant is not None:
+        from daidalos.cli.daidalos.redundant_arm import print_solutions
+
+        print_solutions(redundant, pose, args.arm_angle)
+        return
+    arm = arm_named(args.arm)
+    solutions = inverse(arm, pose)
     if not solutions.reachable.any():
         raise ValueError(f"the pose is out of reach of {arm.title}")
     print("cfx    axis 1    axis 2    axis 3    axis 4    axis 5    axis 6  [cf1, cf4, cf6, cfx]")
@@ -116,13 +144,13 @@ def _inverse(args: argparse.Namespace) -> None:
         conf = confdata(arm, angles)
         if conf[3] != cfx:
             continue  # in a singularity, where it is the same solution as another
-        columns = "".join(f"{_rounded(value, 3):>10}" for value in np.degrees(angles))
+        columns = "".join(f"{rounded(value, 3):>10}" for value in np.degrees(angles))
         configuration = ", ".join(str(value) for value in conf)
         remarks = _remarks(arm, angles, bool(solutions.within_limits[cfx]))
         print(f"{cfx:<3}{columns}  [{configuration}]{remarks}")
 
 
-def _rounded(value: float, digits: int) -> str:
+def rounded(value: float, digits: int) -> str:
     """Return a number without a minus sign before zero."""
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
