@@ -275,6 +275,27 @@ class Controller(NavigationExtension):
     def reset(self) -> None:
         """Reset the state of the last task."""
 
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """What is shown of the last cycle in the costmap's frame: paths (n, 3) as `numpy.ndarray`, and `Candidates`."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Trajectories of which a controller has chosen, to be shown.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, m, 2)
+        The points [m] of each.
+    costs : ndarray, shape (n,)
+        How good they are; the least is the best.
+    """
+
+    points: NDArray[np.floating[Any]]
+    costs: NDArray[np.floating[Any]]
+
 
 class GoalChecker(NavigationExtension):
     """Check of whether a goal is reached."""
@@ -359,6 +380,21 @@ class Critic(NavigationExtension):
         """Add this critic's costs to `rollouts.costs`."""
 
 
+class TrajectoryValidator(NavigationExtension):
+    """Check of the trajectory that the MPPI controller has chosen, before the robot drives along it."""
+
+    @abstractmethod
+    def is_valid(self, trajectory: Array, scene: Scene) -> bool:
+        """Return whether the robot may drive along a trajectory.
+
+        Parameters
+        ----------
+        trajectory : ndarray, shape (n, 3)
+            Poses (x, y, yaw) in the costmap's frame, `scene.step` [s] apart.
+        scene : Scene
+        """
+
+
 class TrajectoryCritic(NavigationExtension):
     """Cost term of trajectories of constant commands, of which the DWB controller takes the best."""
 
@@ -441,16 +477,18 @@ class SpeedLimit:
 
 @dataclass(frozen=True)
 class Output:
-    """Topic that a costmap layer publishes on.
+    """Topic that a costmap layer or a controller publishes on.
 
     Attributes
     ----------
     topic : str
         Its topic.
     type : type
-        `SpeedLimit`, `bool`, or `CloudData` in the costmap's frame, whose topic stands beside those of the costmap.
+        For a layer `SpeedLimit`, `bool`, or `CloudData` in the costmap's frame, whose topic stands beside those of the
+        costmap; for a controller see `Controller.outputs`.
     give : callable
-        Called after each update of the costmap; returns what is published, or None.
+        Called after each update of the costmap, or each cycle of a controller if there are subscribers; returns what is
+        published, or None.
     """
 
     topic: str

@@ -52,6 +52,13 @@ CRITICS: Kind[contracts.Critic] = Kind(
     "gives trajectories of the MPPI controller a cost; named in its `critics`",
     partial(classes_in, "daidalos.navigation.controllers.mppi.critics"),
 )
+TRAJECTORY_VALIDATORS: Kind[contracts.TrajectoryValidator] = Kind(
+    "trajectory_validator",
+    "daidalos.trajectory_validators",
+    f"{_CONTRACTS}:TrajectoryValidator",
+    "checks the trajectory that the MPPI controller has chosen; named in its `TrajectoryValidator.plugin`",
+    partial(classes_in, "daidalos.navigation.controllers.mppi.validators"),
+)
 TRAJECTORY_CRITICS: Kind[contracts.TrajectoryCritic] = Kind(
     "trajectory_critic",
     "daidalos.trajectory_critics",
@@ -131,6 +138,7 @@ KINDS = (
     SMOOTHERS,
     CONTROLLERS,
     CRITICS,
+    TRAJECTORY_VALIDATORS,
     TRAJECTORY_CRITICS,
     GOAL_CHECKERS,
     PROGRESS_CHECKERS,

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from daidalos.navigation.contracts import NavigationContext
-from daidalos.navigation.controllers.mppi_controller import AckermannConstraints, MppiController, MppiParameters
+from daidalos.navigation.controllers.mppi.validators.default_optimal_trajectory_validator import (
+    DefaultOptimalTrajectoryValidator,
+    DefaultOptimalTrajectoryValidatorParameters,
+)
+from daidalos.navigation.controllers.mppi_controller import (
+    AckermannConstraints,
+    MppiController,
+    MppiParameters,
+    VisualizerParameters,
+)
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.errors import NoValidControl
 
@@ -121,3 +130,63 @@ def test_noise_that_is_not_drawn_again_is_the_same_in_each_cycle():
         first = controller.compute_velocity_commands(given)
         controller.reset()
         assert np.array_equal(first, controller.compute_velocity_commands(given)) == equal
+
+
+def shown(controller):
+    return {output.topic: output.give() for output in controller.outputs}
+
+
+def test_what_is_shown_of_a_cycle():
+    parameters = MppiParameters(visualize=True, visualizer=VisualizerParameters(trajectory_step=10, time_step=4))
+    controller = MppiController(parameters, NavigationContext(footprint=ROBOT))
+    assert set(shown(controller).values()) == {None}
+    path = line((2.5, 0.0))
+    controller.compute_velocity_commands(control(path, ground()))
+    outputs = shown(controller)
+    assert outputs["trajectories"].points.shape == (100, 14, 2)
+    assert outputs["trajectories"].costs.shape == (100,)
+    assert np.array_equal(outputs["transformed_global_plan"], path)
+    assert outputs["optimal_trajectory"].shape == (56, 3)
+    controller.reconfigure(MppiParameters(publish_optimal_trajectory=True))
+    assert [topic for topic, value in shown(controller).items() if value is not None] == ["optimal_trajectory"]
+    controller.reconfigure(MppiParameters())
+    assert all(value is None for value in shown(controller).values())
+
+
+class Refusing(DefaultOptimalTrajectoryValidator):
+    """A validator that refuses everything, and keeps the scene."""
+
+    def is_valid(self, trajectory, scene):
+        self.scene = scene
+        return False
+
+
+def test_what_the_validator_refuses_is_not_driven():
+    controller = MppiController(MppiParameters(), NavigationContext(footprint=ROBOT))
+    controller._validator = Refusing()
+    with pytest.raises(NoValidControl):
+        controller.compute_velocity_commands(control(line((2.5, 0.0)), ground()))
+
+
+@pytest.mark.parametrize(
+    ("seconds", "outline", "x", "y", "is_valid"),
+    [
+        (2.0, False, 0.5, 0.0, False),
+        (0.5, False, 0.5, 0.0, True),
+        (0.0, False, 0.5, 0.0, True),
+        (2.0, False, 0.5, 0.27, True),
+        (2.0, True, 0.5, 0.27, False),
+        (2.0, True, 0.5, 0.8, True),
+    ],
+)
+def test_the_validator_looks_for_contact_in_the_next_seconds(seconds, outline, x, y, is_valid):
+    wide = Footprint.of_corners(np.array([[0.2, 0.3], [0.2, -0.3], [-0.2, -0.3], [-0.2, 0.3]]))
+    controller = MppiController(MppiParameters(), NavigationContext(footprint=wide))
+    seen = controller._validator = Refusing(None, NavigationContext(footprint=wide))
+    with pytest.raises(NoValidControl):
+        controller.compute_velocity_commands(control(line((2.5, 0.0)), ground([(x, y)])))
+    ahead = np.stack([np.arange(0.0, 1.4, 0.025), np.zeros(56), np.zeros(56)], axis=-1)
+    parameters = DefaultOptimalTrajectoryValidatorParameters(
+        collision_lookahead_time=seconds, consider_footprint=outline
+    )
+    assert DefaultOptimalTrajectoryValidator(parameters).is_valid(ahead, seen.scene) is is_valid

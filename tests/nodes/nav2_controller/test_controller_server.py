@@ -16,6 +16,7 @@ from nav_msgs.msg import Path
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import LaserScan
+from visualization_msgs.msg import Marker, MarkerArray
 
 from daidalos.nodes.conversions import path_message
 from daidalos.nodes.nav2_controller.controller_server import ControllerServer
@@ -129,6 +130,33 @@ def test_a_path_is_driven_to_its_end(bench: Bench) -> None:
     assert max(message.feedback.speed for message in feedback) == pytest.approx(0.5, abs=0.01)
     assert plans
     assert plans[0].header.frame_id == "odom"
+
+
+@pytest.mark.slow
+def test_rollouts_are_shown(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    mppi = {
+        "plugin": "nav2_mppi_controller::MPPIController",
+        "visualize": True,
+        "TrajectoryVisualizer": {"trajectory_step": 50},
+        "TrajectoryValidator": {"plugin": "mppi::DefaultOptimalTrajectoryValidator", "collision_lookahead_time": 1.0},
+    }
+    bench = Bench(stage(changed("/controller_server", FollowPath=mppi))).start()
+    markers = bench.stage.collect(MarkerArray, "trajectories")
+    plans = bench.stage.collect(Path, "transformed_global_plan")
+    best = bench.stage.collect(Path, "optimal_trajectory")
+    bench.drive_until_moving(straight(1.5))
+    bench.stage.step_for(0.3)
+    (marker,) = markers[-1].markers
+    assert (marker.header.frame_id, marker.type) == ("odom", Marker.LINE_LIST)
+    assert len(marker.points) == len(marker.colors) == 20 * 18 * 2
+    assert plans[-1].poses[-1].pose.position.x == pytest.approx(1.5)
+    assert len(best[-1].poses) == 56
+
+
+def test_an_unknown_validator_fails_the_server(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    mppi = {"plugin": "nav2_mppi_controller::MPPIController", "TrajectoryValidator": {"plugin": "mppi::Default"}}
+    bench = Bench(stage(changed("/controller_server", FollowPath=mppi)))
+    assert bench.server.trigger_configure() != TransitionCallbackReturn.SUCCESS
 
 
 @pytest.mark.slow

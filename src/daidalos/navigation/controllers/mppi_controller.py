@@ -9,12 +9,20 @@ import numpy as np
 from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import ParameterError, Parameters, group, parameter, per_name
-from daidalos.navigation.contracts import ControlInput, Controller, Critic, NavigationContext, Scene
+from daidalos.navigation.contracts import (
+    Candidates,
+    ControlInput,
+    Controller,
+    Critic,
+    NavigationContext,
+    Output,
+    Scene,
+)
 from daidalos.navigation.controllers.mppi.proposals import turn_then_drive
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts, Samples, correlated_noise
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION
 from daidalos.navigation.errors import NoValidControl
-from daidalos.navigation.extensions import CRITICS
+from daidalos.navigation.extensions import CRITICS, TRAJECTORY_VALIDATORS
 from daidalos.navigation.paths import distances_along
 
 TURN_TO = 0.5
@@ -36,6 +44,23 @@ class AckermannConstraints(Parameters):
     """Parameters of the motion model of robots that steer."""
 
     min_turning_r: float = parameter(0.2, "Smallest radius of a curve.", unit="m", above=0.0)
+
+
+@dataclass(frozen=True)
+class VisualizerParameters(Parameters):
+    """Parameters of what is shown of the rollouts."""
+
+    trajectory_step: int = parameter(5, "Every how many rollouts one is shown.", minimum=1)
+    time_step: int = parameter(3, "Every how many steps of a rollout one is shown.", minimum=1)
+
+
+@dataclass(frozen=True)
+class ValidatorChoice(Parameters):
+    """Parameter that names the validator; its own parameters stand beside it."""
+
+    plugin: str = parameter(
+        "mppi::DefaultOptimalTrajectoryValidator", "Class of the validator.", not_empty=True, read_only=True
+    )
 
 
 @dataclass(frozen=True)
@@ -78,6 +103,10 @@ class MppiParameters(Parameters):
     inversion_xy_tolerance: float = parameter(0.2, "Distance of a cusp at which it is reached.", unit="m", minimum=0.0)
     inversion_yaw_tolerance: float = parameter(0.4, "Angle at which a cusp is reached.", unit="rad", minimum=0.0)
     open_loop: bool = parameter(True, "Whether rollouts begin with the last command instead of odometry's velocity.")
+    visualize: bool = parameter(False, "Whether rollouts, the path ahead and the best trajectory are published.")
+    publish_optimal_trajectory: bool = parameter(False, "Whether the best trajectory is published.")
+    visualizer: VisualizerParameters = group(VisualizerParameters, "TrajectoryVisualizer")
+    validator: ValidatorChoice = group(ValidatorChoice, "TrajectoryValidator")
     noise_correlation_time: float = parameter(0.5, "How long a sampled deviation lasts.", unit="s", minimum=0.0)
     critics: tuple[str, ...] = parameter(
         (
@@ -125,7 +154,11 @@ class MppiController(Controller):
     ) -> None:
         super().__init__(parameters, context)
         self.critics = self._make_critics() if critics is None else tuple(critics)
+        self._validator = self.context.make(
+            TRAJECTORY_VALIDATORS, self.parameters.validator.plugin, "TrajectoryValidator.plugin", "TrajectoryValidator"
+        )
         self.period = 1.0 / self.context.frequency
+        self._path: Array | None = None
         self._generator = np.random.default_rng(self.context.seed)
         self.reconfigure(self.parameters)
 
@@ -174,17 +207,41 @@ class MppiController(Controller):
         s = self._single
         return np.stack([s.x[0], s.y[0], s.yaw[0]], axis=-1).astype(np.float64)
 
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """Implement `Controller.outputs`."""
+
+        def trajectories() -> Candidates | None:
+            p = self.parameters
+            if not p.visualize or self._path is None:
+                return None
+            shown = slice(None, None, p.visualizer.trajectory_step), slice(None, None, p.visualizer.time_step)
+            points = np.stack([self._rollouts.x[shown], self._rollouts.y[shown]], axis=-1)
+            return Candidates(points, self._rollouts.costs[shown[0]].copy())
+
+        def best() -> Array | None:
+            p = self.parameters
+            is_shown = (p.visualize or p.publish_optimal_trajectory) and self._path is not None
+            return self.trajectory if is_shown else None
+
+        return (
+            Output("trajectories", Candidates, trajectories),
+            Output("transformed_global_plan", np.ndarray, lambda: self._path if self.parameters.visualize else None),
+            Output("optimal_trajectory", np.ndarray, best),
+        )
+
     def compute_velocity_commands(self, control: ControlInput) -> Array:
         """Implement `Controller.compute_velocity_commands`."""
         self._shift()
+        self._path = control.path
         if self.parameters.open_loop and self._last_command is not None:
             control = replace(control, velocity=self._last_command)
         for attempt in range(self.parameters.retry_attempt_limit + 1):
             if attempt > 0:
                 self._controls[:] = 0.0
             for _ in range(self.parameters.iteration_count):
-                self._optimise(control)
-            if not self._single.collides[0]:
+                scene = self._optimise(control)
+            if not self._single.collides[0] and self._validator.is_valid(self.trajectory, scene):
                 command = np.array([float(one[0, 0]) for one in (self._single.vx, self._single.vy, self._single.wz)])
                 self._last_command = command
                 return command.copy()
@@ -212,8 +269,8 @@ class MppiController(Controller):
         for axis in range(self._controls.shape[1]):
             self._controls[:, axis] = np.interp(then, np.arange(steps), self._controls[:, axis])
 
-    def _optimise(self, control: ControlInput) -> None:
-        """Improve the control sequence by one iteration, and simulate it."""
+    def _optimise(self, control: ControlInput) -> Scene:
+        """Improve the control sequence by one iteration, simulate it, and return what it was judged by."""
         p = self.parameters
         rollouts = self._rollouts
         limits = self._limits()
@@ -237,6 +294,7 @@ class MppiController(Controller):
             best = int(np.argmin(rollouts.costs))
             axes = (rollouts.vx, rollouts.wz, rollouts.vy)[: self._deviations.size]
             self._take(np.stack([axis[best] for axis in axes], axis=-1), control, limits, scene)
+        return scene
 
     def _limits(self) -> Limits:
         """Return the limits of the motion model under the speed limit."""

@@ -8,7 +8,7 @@ import numpy as np
 from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between
-from daidalos.navigation.contracts import ControlInput, Controller, NavigationContext
+from daidalos.navigation.contracts import ControlInput, Controller, NavigationContext, Output
 from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
 from daidalos.navigation.extensions import CONTROLLERS
@@ -85,6 +85,11 @@ class RotationShimController(Controller):
     def inversion_tolerances(self) -> tuple[float, float] | None:
         """Implement `Controller.inversion_tolerances` by the primary controller's."""
         return self.primary.inversion_tolerances
+
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """Implement `Controller.outputs` by the primary controller's."""
+        return self.primary.outputs
 
     def compute_velocity_commands(self, control: ControlInput) -> Array:
         """Implement `Controller.compute_velocity_commands`."""

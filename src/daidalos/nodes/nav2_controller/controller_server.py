@@ -18,6 +18,7 @@ from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import path_array, path_message, twist_message, velocity_of
 from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ContainedNode, ManagedNode
+from daidalos.nodes.nav2_controller._outputs import ControllerOutputs
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode, CostmapOutdated
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare, declare_without_effect
@@ -130,6 +131,8 @@ class ControllerServer(ManagedNode):
             if kind is PROGRESS_CHECKERS and self._settings.progress_checker_plugin:
                 names = (self._settings.progress_checker_plugin,)
             self._plugins[group] = {name: maker.make(kind, name, default) for name in names}
+        shown = [(name, one) for name, plugin in self._plugins["controller_plugins"].items() for one in plugin.outputs]
+        self._shown = ControllerOutputs(self, shown)
         controllers = map(type, self._plugins["controller_plugins"].values())
         self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger(), controllers)
         self._command = self.create_publisher(
@@ -257,6 +260,9 @@ class ControllerServer(ManagedNode):
                 circumscribed_cost=layered.circumscribed_cost(self._costmap.footprint),
             )
         self._publish_velocity(step.velocity * self._share_of_speed())
+        self._shown.publish(
+            self._pursuit.plugins[0] or self._settings.controller_plugins[0], self._costmap.global_frame
+        )
         self._tell(goal_handle, step)
         return not step.done
 

@@ -1,0 +1,1 @@
+"""Validators of the trajectory that the MPPI controller has chosen, one class each."""
