@@ -18,7 +18,7 @@ OTHER_CLOCKS = {
     "ClockType": {"STEADY_TIME", "SYSTEM_TIME"},
 }
 ALLOWED = {
-    "industry/assistance/light_tower.py": "the repetition of DMX levels that Art-Net asks for",
+    "industry/assistance/laser_projector.py": "the time stamps of frames, which a projector expects in real time",
     "industry/lighting/device.py": "how long a broker is lost, and how often the state is published",
     "industry/lighting/embedded_broker.py": "one turn of an event loop at its end",
     "industry/lighting/engine.py": "the pace of DMX frames, which lamps expect in real time",

@@ -54,7 +54,7 @@ def read(tmp_path: Path, text: str) -> Sequence:
 def test_a_file(tmp_path: Path) -> None:
     found = read(tmp_path, FILE)
     assert found.name == "Gearbox"
-    assert {name: kind for name, (kind, _) in found.devices.items()} == {"lamp": "moving_head", "tower": "light_tower"}
+    assert {name: one.kind for name, one in found.devices.items()} == {"lamp": "moving_head", "tower": "light_tower"}
     first = found.steps[0].showings
     assert (first[0].place, first[0].content) == ((-0.5, 0.4, 0.83), Content("red"))
     assert (first[1].place, first[1].content) == (None, Content("yellow"))
@@ -71,7 +71,11 @@ def test_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("before", "after", "problem"),
     [
-        ("kind: moving_head", "kind: moving_haed", "no kind of device; did you mean 'moving_head'"),
+        (
+            "kind: moving_head",
+            "kind: moving_haed",
+            "there is no assistance device 'moving_haed'; did you mean 'moving_head'",
+        ),
         ("lamp: [0.6", "lapm: [0.6", "there is no device 'lapm'; did you mean 'lamp'"),
         ("[-0.5, 0.4, 0.83]", "[-0.5, 0.4]", r"steps\[0\].*'lamp': 'point' must be \[x, y, z\]"),
         ("[-0.5, 0.4, 0.83]", "[-0.5, 0.4, .nan]", "finite"),

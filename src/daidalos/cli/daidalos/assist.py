@@ -61,8 +61,8 @@ def _check(args: argparse.Namespace) -> int:
     from daidalos.industry.assistance.sequence import read_sequence
 
     sequence = read_sequence(args.sequence)
-    for name, (kind, _) in sequence.devices.items():
-        print(f"{name}: {kind}")
+    for name, planned in sequence.devices.items():
+        print(f"{name}: {planned.kind}")
     for number, step in enumerate(sequence.steps, 1):
         print(_line(number, len(sequence.steps), step))
     return 0
@@ -85,7 +85,7 @@ def _run(args: argparse.Namespace) -> int:
     with ExitStack() as stack:
         devices = sequence.open_devices(stack)
         for name, device in devices.items():
-            if hasattr(device, "url"):
+            if device.url:
                 print(f"{name}: fill the projector's screen with {device.url}", flush=True)
         announced: list[Callable[[int, Step | None], None]] = [_print_step(sequence)]
 

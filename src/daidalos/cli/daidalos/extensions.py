@@ -19,6 +19,7 @@ _DECLARED_IN = (
     "daidalos.simulation.extensions",
     "daidalos.control.extensions",
     "daidalos.navigation.extensions",
+    "daidalos.industry.assistance.extensions",
     "daidalos.studio.extensions",
     "daidalos.nodes.extensions",
 )

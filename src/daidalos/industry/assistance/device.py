@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
+from pathlib import Path
+from typing import Any, ClassVar
 
+from daidalos.common import parameters
 from daidalos.common.errors import UserError
 from daidalos.common.pose3 import Vector
 
@@ -33,15 +35,28 @@ class Content:
 
 
 class Device(ABC):
-    """Assistance device.
+    """Assistance device, which is made with its parameters and the folder that relative paths begin at.
 
     Attributes
     ----------
+    names : tuple of str
+        Class attribute: what the file of a sequence calls its ``kind``, of built-in ones.
+    Parameters : type
+        Class attribute: what the file may set.
     skills : tuple of str
         Class attribute: `POINT` and `SHOW`, or one of them.
+    url : str
+        Page that has to fill the device's screen; empty without one.
     """
 
+    names: ClassVar[tuple[str, ...]] = ()
+    Parameters: ClassVar[type[parameters.Parameters]] = parameters.Parameters
     skills: ClassVar[tuple[str, ...]] = (POINT, SHOW)
+    url = ""
+
+    @abstractmethod
+    def __init__(self, parameters: Any, folder: Path) -> None:
+        """Open the device; raises a `UserError` or `OSError` where it cannot be."""
 
     def point(self, place: Vector, content: Content) -> None:
         """Point at a place of the cell [m].

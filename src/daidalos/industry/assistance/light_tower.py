@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import ClassVar
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.suggestions import hint
 from daidalos.industry.assistance.device import SHOW, Content, Device, DeviceError
+from daidalos.industry.assistance.repetition import Repetition
 from daidalos.industry.lighting import artnet
 from daidalos.industry.lighting.outputs import ArtNetOutput
 from daidalos.industry.lighting.show import KEEP_ALIVE_S
@@ -37,6 +37,8 @@ class LightTowerParameters(Parameters):
 class LightTower(Device):
     """Tower of which one lamp is lit: that of the content's colour."""
 
+    names: ClassVar[tuple[str, ...]] = ("light_tower",)
+    Parameters = LightTowerParameters
     skills: ClassVar[tuple[str, ...]] = (SHOW,)
 
     def __init__(self, parameters: LightTowerParameters, folder: Path) -> None:
@@ -48,11 +50,7 @@ class LightTower(Device):
         }
         self._universe = parameters.universe
         self._output = ArtNetOutput(parameters.host, parameters.port)
-        self._levels = bytes(CHANNELS)
-        self._condition = threading.Condition()
-        self._is_ending = False
-        self._thread = threading.Thread(target=self._repeat, name="light tower", daemon=True)
-        self._thread.start()
+        self._repetition = Repetition("light tower", self._send, bytes(CHANNELS), KEEP_ALIVE_S)
 
     def show(self, content: Content) -> None:
         """Light the lamp of a colour."""
@@ -60,35 +58,19 @@ class LightTower(Device):
             raise DeviceError(f"there is no lamp '{content.color}'{hint(content.color, self._channels)}")
         levels = bytearray(CHANNELS)
         levels[self._channels[content.color]] = 255
-        self._set(bytes(levels))
+        self._repetition.set(bytes(levels))
 
     def clear(self) -> None:
         """Switch all lamps off."""
-        self._set(bytes(CHANNELS))
+        self._repetition.set(bytes(CHANNELS))
 
     def close(self) -> None:
         """Switch all lamps off and close the output."""
-        self.clear()
-        with self._condition:
-            self._is_ending = True
-            self._condition.notify()
-        self._thread.join()
-        self._output.close()
+        try:
+            self.clear()
+        finally:
+            self._repetition.close()
+            self._output.close()
 
-    def _set(self, levels: bytes) -> None:
-        with self._condition:
-            self._levels = levels
-            try:
-                self._output.send(self._universe, levels)
-            except OSError as error:
-                raise DeviceError(f"cannot send: {error}") from None
-
-    def _repeat(self) -> None:
-        """Send the levels again and again, as Art-Net asks."""
-        with self._condition:
-            while not self._is_ending:
-                self._condition.wait(KEEP_ALIVE_S)
-                try:
-                    self._output.send(self._universe, self._levels)
-                except OSError:
-                    continue  # the next one may arrive
+    def _send(self, levels: bytes) -> None:
+        self._output.send(self._universe, levels)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import ClassVar
 
 from daidalos.common.errors import UserError
 from daidalos.common.parameters import Parameters, parameter
@@ -31,6 +32,9 @@ class MovingHeadDeviceParameters(Parameters):
 
 class MovingHeadDevice(Device):
     """Head that lays its spot on a place; ``show`` sets its colour."""
+
+    names: ClassVar[tuple[str, ...]] = ("moving_head",)
+    Parameters = MovingHeadDeviceParameters
 
     def __init__(self, parameters: MovingHeadDeviceParameters, folder: Path) -> None:
         configuration = read_configuration(folder / parameters.config if parameters.config else DEFAULT)

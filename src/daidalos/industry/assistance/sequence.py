@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,22 +11,13 @@ from typing import Any
 
 from daidalos.common.documents import read_yaml
 from daidalos.common.errors import Location, UserError
+from daidalos.common.extensions import find
 from daidalos.common.parameters import ParameterError, Parameters, parameters_from
 from daidalos.common.pose3 import Vector
 from daidalos.common.suggestions import hint
 from daidalos.industry.assistance.device import POINT, SHOW, Content, Device, DeviceError
-from daidalos.industry.assistance.light_tower import LightTower, LightTowerParameters
-from daidalos.industry.assistance.moving_head import MovingHeadDevice, MovingHeadDeviceParameters
-from daidalos.industry.assistance.video_projector import VideoProjector, VideoProjectorParameters
+from daidalos.industry.assistance.extensions import DEVICES
 from daidalos.industry.lighting.device import MqttParameters
-
-Maker = Callable[[Any, Path], Device]
-KINDS: Mapping[str, tuple[type[Parameters], Maker, type[Device]]] = {
-    "light_tower": (LightTowerParameters, LightTower, LightTower),
-    "moving_head": (MovingHeadDeviceParameters, MovingHeadDevice, MovingHeadDevice),
-    "video_projector": (VideoProjectorParameters, VideoProjector, VideoProjector),
-}
-"""Kinds of devices by the name in the file."""
 
 BUTTON, MQTT, TOPIC, AFTER = "button", "mqtt", "topic", "after"
 
@@ -75,13 +66,22 @@ class Step:
 
 
 @dataclass(frozen=True)
+class PlannedDevice:
+    """Device of a file that is not open yet: its kind, class and parameters."""
+
+    kind: str
+    device_class: type[Device]
+    parameters: Parameters
+
+
+@dataclass(frozen=True)
 class Sequence:
     """Work sequence of a file.
 
     Attributes
     ----------
     name : str
-    devices : mapping of str to (kind, parameters)
+    devices : mapping of str to PlannedDevice
     steps : tuple of Step
     mqtt : MqttParameters or None
         None where the file names no broker.
@@ -90,7 +90,7 @@ class Sequence:
     """
 
     name: str
-    devices: Mapping[str, tuple[str, Parameters]]
+    devices: Mapping[str, PlannedDevice]
     steps: tuple[Step, ...]
     mqtt: MqttParameters | None
     folder: Path
@@ -104,9 +104,9 @@ class Sequence:
             When one cannot be opened.
         """
         found = {}
-        for name, (kind, parameters) in self.devices.items():
+        for name, planned in self.devices.items():
             try:
-                found[name] = KINDS[kind][1](parameters, self.folder)
+                found[name] = planned.device_class(planned.parameters, self.folder)
             except UserError as error:
                 raise UserError(f"device '{name}': {error}") from None
             stack.callback(found[name].close)
@@ -171,15 +171,16 @@ def read_showing(device: str, content: Any, skills: tuple[str, ...]) -> Showing:
     return Showing(device, Content(**texts), (x, y, z))
 
 
-def _device(item: Any, place: Location) -> tuple[str, Parameters]:
+def _device(item: Any, place: Location) -> PlannedDevice:
     values = dict(_mapping(item, place))
     kind = values.pop("kind", None)
-    if kind not in KINDS:
-        raise UserError(f"'{kind}' is no kind of device{hint(str(kind), KINDS)}", place)
-    return str(kind), _parameters(KINDS[str(kind)][0], values, place)
+    if not isinstance(kind, str):
+        raise UserError("needs a 'kind'", place)
+    device_class = find(DEVICES, kind, asked_by=place)
+    return PlannedDevice(kind, device_class, _parameters(device_class.Parameters, values, place))
 
 
-def _step(item: Any, devices: Mapping[str, tuple[str, Parameters]], place: Location) -> Step:
+def _step(item: Any, devices: Mapping[str, PlannedDevice], place: Location) -> Step:
     values = _mapping(item, place, ("name", "show", "confirm"))
     name = values.get("name")
     if not isinstance(name, str) or not name:
@@ -189,7 +190,7 @@ def _step(item: Any, devices: Mapping[str, tuple[str, Parameters]], place: Locat
         if device not in devices:
             raise UserError(f"there is no device '{device}'{hint(device, devices)}", place)
         try:
-            showings.append(read_showing(device, content, KINDS[devices[device][0]][2].skills))
+            showings.append(read_showing(device, content, devices[device].device_class.skills))
         except DeviceError as error:
             raise UserError(f"'{device}': {error}", place) from None
     return Step(name, tuple(showings), _confirmation(values.get("confirm"), place))

@@ -6,7 +6,7 @@ import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose3 import Vector
@@ -37,6 +37,9 @@ class VideoProjectorParameters(Parameters):
 
 class VideoProjector(Device):
     """Projector whose picture is a page that a browser fills the projector's screen with."""
+
+    names: ClassVar[tuple[str, ...]] = ("video_projector",)
+    Parameters = VideoProjectorParameters
 
     def __init__(self, parameters: VideoProjectorParameters, folder: Path) -> None:
         self._homography = read_homography(folder / parameters.calibration)

@@ -65,7 +65,7 @@ class ArtNetOutput:
         reply_port: int | None = None,
     ) -> None:
         self.universes = universes
-        self._target = _target(host, port)
+        self._target = resolve(host, port)
         self._socket = _socket(broadcast=True)
         self._sequences: dict[int, int] = {}
         self._replier = _replier(reply_port)
@@ -137,7 +137,7 @@ class SacnOutput:
     ) -> None:
         self.universes = universes
         self._is_multicast = host == "multicast"
-        self._target = ("", port) if self._is_multicast else _target(host, port)
+        self._target = ("", port) if self._is_multicast else resolve(host, port)
         self._socket = _socket(broadcast=False)
         if self._is_multicast:
             self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 4)
@@ -230,7 +230,8 @@ def _open_serial(device: str) -> Any:
         raise OSError(f"cannot open the USB widget at {device}: {error}") from None
 
 
-def _target(host: str, port: int) -> tuple[str, int]:
+def resolve(host: str, port: int) -> tuple[str, int]:
+    """Return the address of a host, with a port; raises a `UserError` where there is none of its name."""
     try:
         return socket.gethostbyname(host), port
     except OSError:

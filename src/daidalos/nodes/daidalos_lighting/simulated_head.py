@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-import socket
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,13 +16,13 @@ from std_msgs.msg import ColorRGBA
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
-from daidalos.common.errors import UserError
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.industry.lighting import artnet
 from daidalos.industry.lighting.configuration import DEFAULT, read_configuration
 from daidalos.industry.lighting.look import Appearance, appearance
 from daidalos.industry.lighting.motion import Motion
 from daidalos.industry.lighting.show import FRAME_S, Show
+from daidalos.nodes.daidalos_lighting._receiver import listen
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 
@@ -62,7 +61,7 @@ class SimulatedHead(Node):
         self._motion = Motion(self._head.angles, self._head.limits)
         self._levels = self._head.levels
         self._reach = 0.0
-        self._socket = _listen(settings.host, settings.port)
+        self._socket = listen("Art-Net", settings.host, settings.port)
         self._axes = self.create_publisher(JointTrajectory, "head/joint_trajectory", 1)
         self._markers = self.create_publisher(MarkerArray, "beam/markers", 1)
         self.create_subscription(LaserScan, "beam/range", self._take_range, 1)
@@ -130,17 +129,6 @@ def _cone(start: float, end: float, near: float, far: float) -> list[Point]:
         c, d = Point(x=end * x0, y=end * y0, z=far), Point(x=end * x1, y=end * y1, z=far)
         points += [a, c, d, a, d, b]
     return points
-
-
-def _listen(host: str, port: int) -> socket.socket:
-    receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    receiver.setblocking(False)
-    try:
-        receiver.bind((host, port))
-    except OSError as error:
-        receiver.close()
-        raise UserError(f"cannot receive Art-Net at {host}:{port}: {error.strerror}") from None
-    return receiver
 
 
 def main() -> int:
