@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from artnet_port import artnet_port
 from places import REPOSITORY
 
 from . import pages
@@ -20,6 +21,7 @@ def test_page(tmp_path: Path) -> None:
 
     domain = 1 + zlib.crc32(str(tmp_path).encode()) % 100
     reader = Reader(tmp_path, lambda folder: Terminal(environment(domain, tmp_path), folder))
-    reader.follow(pages.read(REPOSITORY / "docs" / "assistance.md"))
-    reader.close()
+    with artnet_port():
+        reader.follow(pages.read(REPOSITORY / "docs" / "assistance.md"))
+        reader.close()
     assert not reader.mismatches, "\n".join(["", *reader.mismatches])

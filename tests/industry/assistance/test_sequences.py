@@ -17,6 +17,7 @@ from daidalos.industry.assistance.runner import Runner, write_times
 from daidalos.industry.assistance.sequence import (
     AFTER,
     BUTTON,
+    HAND,
     MQTT,
     TOPIC,
     Confirmation,
@@ -82,7 +83,7 @@ def test_a_file(tmp_path: Path) -> None:
         ("{color: yellow}", "{point: [0, 0, 0]}", "cannot point"),
         ("{color: yellow}", "{colour: yellow}", "'colour' is unknown; did you mean 'color'"),
         ("{after: 1.5}", "{after: -1}", "must be a time in seconds"),
-        ("{after: 1.5}", "{after: 1, mqtt: a}", "one of mqtt, topic and after"),
+        ("{after: 1.5}", "{after: 1, mqtt: a}", "one of mqtt, topic, after and hand"),
         ("universe: 3", "universe: -3", "universe.*at least 0"),
         ("name: Done", "title: Done", "'title' is unknown"),
         ("steps:", "stepz:", "'stepz' is unknown; did you mean 'steps'"),
@@ -98,17 +99,23 @@ class Recorded(Device):
 
     def __init__(self) -> None:
         self.shown: list[Any] = []
+        self.changed = threading.Condition()
 
     def point(self, place: Vector, content: Content) -> None:
         if place[2] > 5.0:
             raise DeviceError("out of reach")
-        self.shown.append((place, content.color))
+        self._note((place, content.color))
 
     def show(self, content: Content) -> None:
-        self.shown.append(content.color)
+        self._note(content.color)
 
     def clear(self) -> None:
-        self.shown.append(None)
+        self._note(None)
+
+    def _note(self, what: Any) -> None:
+        with self.changed:
+            self.shown.append(what)
+            self.changed.notify_all()
 
 
 class Workplace:
@@ -166,6 +173,61 @@ def test_an_aborted_run_and_a_device_that_fails(tmp_path: Path) -> None:
     assert place.devices["lamp"].shown[-1] is None
 
 
+FOLLOWING = """
+devices: {lamp: {kind: moving_head}, tower: {kind: light_tower}}
+world_frame: cell
+camera: {depth: /eye/depth, hold: 0.2}
+steps:
+  - {name: Watch the arm, show: {lamp: {follow: /target, color: red}}, confirm: {topic: /done}}
+  - {name: Take it, show: {lamp: {follow: /target}}, confirm: {hand: [0.5, 0.25, 1]}}
+"""
+
+
+def test_a_device_follows_the_newest_point(tmp_path: Path) -> None:
+    sequence = read(tmp_path, FOLLOWING)
+    assert (sequence.world_frame, sequence.camera.depth, sequence.camera.hold) == ("cell", "/eye/depth", 0.2)
+    hand = sequence.confirmations(HAND)
+    assert [(one.name, one.place) for one in hand] == [("[0.5, 0.25, 1]", (0.5, 0.25, 1.0))]
+    place = Workplace(sequence, {2: hand})
+    lamp = place.devices["lamp"]
+    seen: list[Any] = []
+
+    def work() -> None:
+        """Send a flood of points, and confirm the first step when the last of them is shown."""
+        for n in range(10_000):
+            place.runner.follow("/target", (0.0, 0.0, n / 1e5))
+            place.runner.follow("/other", (9.0, 9.0, 9.0))
+        with lamp.changed:
+            lamp.changed.wait_for(lambda: lamp.shown[-1:] == [((0.0, 0.0, 9999 / 1e5), "red")], 20.0)
+            seen.extend(lamp.shown)
+        place.runner.confirm(Confirmation(TOPIC, "/done"))
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    times = place.runner.run()
+    thread.join()
+    assert [one.confirmed_by for one in times] == ["topic /done", "hand [0.5, 0.25, 1]"]
+    assert seen[0] is None or seen[0][1] == "red"  # dark until a point came
+    assert lamp.shown[len(seen) :] == [((0.0, 0.0, 9999 / 1e5), ""), None]  # known when the next step begins
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "problem"),
+    [
+        ("follow: /target, color", "follow: /target, point: [0, 0, 0], color", "either 'point' or 'follow'"),
+        ("{lamp: {follow: /target}}", "{tower: {follow: /target}}", "cannot point"),
+        ("{lamp: {follow: /target}}", "{lamp: {folow: /target}}", "'folow' is unknown; did you mean 'follow'"),
+        ("hand: [0.5, 0.25, 1]", "hand: [0.5, .nan, 1]", "'hand' must be"),
+        ("hold: 0.2", "hold: -1", "'hold' must be at least 0"),
+        ("hold: 0.2", "hald: 1", "hald"),
+        ("world_frame: cell", "world_frame: []", "name of a frame"),
+    ],
+)
+def test_what_cannot_be_followed_or_seen_is_named(tmp_path: Path, before: str, after: str, problem: str) -> None:
+    with pytest.raises(UserError, match=f"gearbox.yaml.*{problem}"):
+        read(tmp_path, FOLLOWING.replace(before, after))
+
+
 def test_devices_and_confirmations_over_mqtt() -> None:
     mqtt = pytest.importorskip("paho.mqtt.client")
     pytest.importorskip("amqtt")
@@ -200,6 +262,7 @@ def test_devices_and_confirmations_over_mqtt() -> None:
             ("point", "[0, 0]", "'point' must be"),
             ("point", '{"color": "red"}', "needs a point"),
             ("show", "[0, 0, 1]", "takes no point"),
+            ("point", '{"follow": "/target"}', "'follow' is for steps"),
             ("show", "{", "not valid JSON"),
         ):
             client.publish(f"assist/lamp/{topic}", content, qos=1)

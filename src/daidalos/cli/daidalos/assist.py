@@ -143,26 +143,17 @@ def _read_keys(runner: Runner) -> None:
 
 @contextmanager
 def _topics(sequence: Sequence, runner: Runner) -> Iterator[None]:
-    """Confirm by messages of ROS topics meanwhile."""
-    from daidalos.industry.assistance.sequence import TOPIC, Confirmation
+    """Pass on what comes from ROS topics meanwhile."""
+    from daidalos.nodes.sequence_inputs import SequenceInputs, is_needed
 
-    wanted = {one.confirmation for one in sequence.steps if one.confirmation.kind == TOPIC}
-    if not wanted:
+    if not is_needed(sequence):
         yield
         return
     import rclpy
     from rclpy.executors import ExternalShutdownException
-    from rosidl_runtime_py.utilities import get_message
 
     rclpy.init(args=[])
-    node = rclpy.create_node("assist")
-    for one in wanted:
-        try:
-            kind = get_message(one.type_name)
-        except (AttributeError, ImportError, ValueError) as error:
-            raise UserError(f"the type of '{one.name}' is not known: {error}") from None
-        event = Confirmation(TOPIC, one.name)
-        node.create_subscription(kind, one.name, lambda message, event=event: runner.confirm(event), 10)
+    node = SequenceInputs(sequence, runner, _report)
 
     def spin() -> None:
         try:

@@ -99,6 +99,8 @@ class AssistBroker:
         device = self._devices[name]
         try:
             showing = read_showing(name, _json(message.payload), device.skills)
+            if showing.follow:
+                raise DeviceError("'follow' is for steps of a sequence, not for messages")
             if (showing.place is not None) != (skill == POINT):
                 raise DeviceError(f"'{skill}' {'needs a' if skill == POINT else 'takes no'} point")
             carry_out(device, showing)

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 import csv
 import queue
+import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from daidalos.common.pose3 import Vector
 from daidalos.industry.assistance.device import Device, DeviceError
 from daidalos.industry.assistance.sequence import AFTER, Confirmation, Sequence, Showing, Step
 
 ABORTED = Confirmation("aborted")
+
+
+@dataclass(frozen=True)
+class TargetArrival:
+    """Event that a topic which devices follow has a newer point."""
+
+    topic: str
 
 
 @dataclass(frozen=True)
@@ -26,7 +35,7 @@ class StepTime:
 
 
 class Runner:
-    """Run of a sequence; `confirm` may be called from any thread.
+    """Run of a sequence; `confirm`, `follow` and `abort` may be called from any thread.
 
     Parameters
     ----------
@@ -50,11 +59,22 @@ class Runner:
     ) -> None:
         self._sequence, self._devices, self._clock = sequence, devices, clock
         self._announce, self._report = announce, report
-        self._events: queue.SimpleQueue[Confirmation] = queue.SimpleQueue()
+        self._events: queue.SimpleQueue[Confirmation | TargetArrival] = queue.SimpleQueue()
+        self._lock = threading.Lock()
+        self._arrived: dict[str, Vector] = {}
+        self._targets: dict[str, Vector] = {}
 
     def confirm(self, event: Confirmation) -> None:
         """Pass on what has happened; it ends the step that waits for it."""
         self._events.put(event)
+
+    def follow(self, topic: str, place: Vector) -> None:
+        """Point the devices that follow a topic at its newest point [m]; of many that come at once, at the last."""
+        with self._lock:
+            is_first = topic not in self._arrived
+            self._arrived[topic] = place
+        if is_first:
+            self._events.put(TargetArrival(topic))
 
     def abort(self) -> None:
         """End the run."""
@@ -70,7 +90,7 @@ class Runner:
                 self._discard_events()
                 self._announce(number, step)
                 self._show(step)
-                if not self._wait(step.confirmation, began):
+                if not self._wait(step, began):
                     break
                 confirmed = step.confirmation
                 by = f"{confirmed.kind} {confirmed.name}".strip()
@@ -85,7 +105,9 @@ class Runner:
         """Forget confirmations of the step before, such as a button pressed twice."""
         while not self._events.empty():
             event = self._events.get()
-            if event is ABORTED:
+            if isinstance(event, TargetArrival):
+                self._take_target(event.topic)
+            elif event is ABORTED:
                 self._events.put(event)
                 return
 
@@ -95,7 +117,21 @@ class Runner:
             if name not in shown:
                 self._try(name, device.clear)
         for one in step.showings:
-            self._try(one.device, lambda one=one: carry_out(self._devices[one.device], one))  # type: ignore[misc]
+            self._carry_out(one)
+
+    def _carry_out(self, showing: Showing) -> None:
+        """Show a content; a device that follows a topic is dark until a point has come."""
+        device = self._devices[showing.device]
+        if showing.follow and showing.follow not in self._targets:
+            self._try(showing.device, device.clear)
+            return
+        if showing.follow:
+            showing = replace(showing, place=self._targets[showing.follow])
+        self._try(showing.device, lambda: carry_out(device, showing))
+
+    def _take_target(self, topic: str) -> None:
+        with self._lock:
+            self._targets[topic] = self._arrived.pop(topic)
 
     def _try(self, name: str, act: Callable[[], None]) -> None:
         try:
@@ -103,8 +139,9 @@ class Runner:
         except DeviceError as error:
             self._report(f"{name}: {error}")
 
-    def _wait(self, wanted: Confirmation, began: float) -> bool:
-        """Wait for a confirmation; return whether it has come, False where the run was aborted."""
+    def _wait(self, step: Step, began: float) -> bool:
+        """Wait for a step's confirmation; return whether it has come, False where the run was aborted."""
+        wanted = step.confirmation
         while True:
             rest = began + wanted.seconds - self._clock() if wanted.kind == AFTER else None
             if rest is not None and rest <= 0.0:
@@ -112,6 +149,12 @@ class Runner:
             try:
                 event = self._events.get(timeout=rest)
             except queue.Empty:
+                continue
+            if isinstance(event, TargetArrival):
+                self._take_target(event.topic)
+                for one in step.showings:
+                    if one.follow == event.topic:
+                        self._carry_out(one)
                 continue
             if event is ABORTED:
                 return False

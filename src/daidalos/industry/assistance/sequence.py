@@ -17,9 +17,11 @@ from daidalos.common.pose3 import Vector
 from daidalos.common.suggestions import hint
 from daidalos.industry.assistance.device import POINT, SHOW, Content, Device, DeviceError
 from daidalos.industry.assistance.extensions import DEVICES
+from daidalos.industry.assistance.hand import HandParameters
 from daidalos.industry.lighting.device import MqttParameters
 
-BUTTON, MQTT, TOPIC, AFTER = "button", "mqtt", "topic", "after"
+_KEYS = ("point", "follow", "color", "text")
+BUTTON, MQTT, TOPIC, AFTER, HAND = "button", "mqtt", "topic", "after", "hand"
 
 
 @dataclass(frozen=True)
@@ -29,15 +31,17 @@ class Confirmation:
     Attributes
     ----------
     kind : str
-        `BUTTON`, `MQTT`, `TOPIC` or `AFTER`.
+        `BUTTON`, `MQTT`, `TOPIC`, `AFTER` or `HAND`.
     name : str
-        MQTT topic or ROS topic.
+        MQTT topic or ROS topic, or the hand's place in words.
     payload : str
         What the MQTT message must be; anything where empty.
     type_name : str
         Of the ROS topic's messages.
     seconds : float
         Time after which the step ends by itself [s].
+    place : (x, y, z) or None
+        Above which a hand is to be seen [m].
     """
 
     kind: str = BUTTON
@@ -45,15 +49,27 @@ class Confirmation:
     payload: str = ""
     type_name: str = "std_msgs/msg/Empty"
     seconds: float = 0.0
+    place: Vector | None = None
 
 
 @dataclass(frozen=True)
 class Showing:
-    """What one device shows in a step: a content, at a place [m] where it points."""
+    """What one device shows in a step.
+
+    Attributes
+    ----------
+    device : str
+    content : Content
+    place : (x, y, z) or None
+        Where it points [m].
+    follow : str
+        ROS topic whose newest point it points at; none where empty.
+    """
 
     device: str
     content: Content
     place: Vector | None = None
+    follow: str = ""
 
 
 @dataclass(frozen=True)
@@ -85,6 +101,10 @@ class Sequence:
     steps : tuple of Step
     mqtt : MqttParameters or None
         None where the file names no broker.
+    camera : HandParameters
+        Depth camera that sees hands.
+    world_frame : str
+        Frame of `tf` in which places are.
     folder : Path
         What relative paths begin at.
     """
@@ -93,7 +113,13 @@ class Sequence:
     devices: Mapping[str, PlannedDevice]
     steps: tuple[Step, ...]
     mqtt: MqttParameters | None
+    camera: HandParameters
+    world_frame: str
     folder: Path
+
+    def confirmations(self, kind: str) -> list[Confirmation]:
+        """Return the different confirmations of a kind."""
+        return list(dict.fromkeys(one.confirmation for one in self.steps if one.confirmation.kind == kind))
 
     def open_devices(self, stack: ExitStack) -> dict[str, Device]:
         """Open all devices, to be closed by a stack.
@@ -124,7 +150,7 @@ def read_sequence(path: Path) -> Sequence:
         When the file cannot be opened.
     """
     source = str(path)
-    content = _mapping(read_yaml(path), Location(source), ("name", "devices", "steps", "mqtt"))
+    content = _mapping(read_yaml(path), Location(source), ("name", "devices", "steps", "mqtt", "camera", "world_frame"))
     devices = {}
     for name, item in _mapping(content.get("devices") or {}, Location(source, None, "devices")).items():
         devices[name] = _device(item, Location(source, None, f"devices.{name}"))
@@ -137,11 +163,19 @@ def read_sequence(path: Path) -> Sequence:
         mqtt = _parameters(MqttParameters, content["mqtt"] or {}, Location(source, None, "mqtt"))
     if mqtt is None and any(one.confirmation.kind == MQTT for one in steps):
         mqtt = MqttParameters()
-    return Sequence(str(content.get("name") or path.stem), devices, steps, mqtt, path.parent)
+    camera = _parameters(HandParameters, content.get("camera") or {}, Location(source, None, "camera"))
+    world_frame = content.get("world_frame", "world")
+    if not isinstance(world_frame, str) or not world_frame:
+        raise UserError("must be the name of a frame", Location(source, None, "world_frame"))
+    return Sequence(
+        str(content.get("name") or path.stem), devices, steps, mqtt, camera, world_frame, path.parent
+    )  # fmt: skip
 
 
 def read_showing(device: str, content: Any, skills: tuple[str, ...]) -> Showing:
     """Return what a device is asked to show: ``{point: [x, y, z], color: red, text: ...}``, or ``[x, y, z]`` alone.
+
+    In place of ``point``, ``follow`` names a topic of points.
 
     Raises
     ------
@@ -153,22 +187,28 @@ def read_showing(device: str, content: Any, skills: tuple[str, ...]) -> Showing:
     if not isinstance(content, dict):
         raise DeviceError("expected {point: [x, y, z], color: red, text: ...}")
     for key in content:
-        if key not in ("point", "color", "text"):
-            raise DeviceError(f"'{key}' is unknown{hint(str(key), ('point', 'color', 'text'))}")
+        if key not in _KEYS:
+            raise DeviceError(f"'{key}' is unknown{hint(str(key), _KEYS)}")
     texts = {key: content.get(key, "") for key in ("color", "text")}
     for key, value in texts.items():
         if not isinstance(value, str) or len(value) > 1000:
             raise DeviceError(f"'{key}' must be a string of at most 1000 characters")
-    place = content.get("point")
-    if place is None:
+    place, follow = content.get("point"), content.get("follow", "")
+    if not isinstance(follow, str) or (follow and place is not None):
+        raise DeviceError("'follow' must be the name of a topic, and there is either 'point' or 'follow'")
+    if place is None and not follow:
         return Showing(device, Content(**texts))
     if POINT not in skills:
         raise DeviceError(f"the device cannot point, only {SHOW}")
-    is_point = isinstance(place, list) and len(place) == 3 and all(type(one) in (int, float) for one in place)
-    if not is_point or not all(math.isfinite(one) and abs(one) < 1e6 for one in place):
-        raise DeviceError("'point' must be [x, y, z] in metres, all of them finite numbers")
-    x, y, z = (float(one) for one in place)
-    return Showing(device, Content(**texts), (x, y, z))
+    return Showing(device, Content(**texts), None if place is None else _place("point", place), follow)
+
+
+def _place(key: str, value: Any) -> Vector:
+    is_point = isinstance(value, list) and len(value) == 3 and all(type(one) in (int, float) for one in value)
+    if not is_point or not all(math.isfinite(one) and abs(one) < 1e6 for one in value):
+        raise DeviceError(f"'{key}' must be [x, y, z] in metres, all of them finite numbers")
+    x, y, z = (float(one) for one in value)
+    return x, y, z
 
 
 def _device(item: Any, place: Location) -> PlannedDevice:
@@ -199,15 +239,21 @@ def _step(item: Any, devices: Mapping[str, PlannedDevice], place: Location) -> S
 def _confirmation(item: Any, place: Location) -> Confirmation:
     if item is None or item == BUTTON:
         return Confirmation()
-    values = _mapping(item, place, (MQTT, "payload", TOPIC, "type", AFTER))
-    kinds = [one for one in (MQTT, TOPIC, AFTER) if one in values]
+    values = _mapping(item, place, (MQTT, "payload", TOPIC, "type", AFTER, HAND))
+    kinds = [one for one in (MQTT, TOPIC, AFTER, HAND) if one in values]
     if len(kinds) != 1:
-        raise UserError("'confirm' must be button, or have one of mqtt, topic and after", place)
+        raise UserError("'confirm' must be button, or have one of mqtt, topic, after and hand", place)
     value = values[kinds[0]]
     if kinds == [AFTER]:
         if type(value) not in (int, float) or not 0.0 <= value < 1e6:
             raise UserError(f"'after' must be a time in seconds, got {value!r}", place)
         return Confirmation(AFTER, seconds=float(value))
+    if kinds == [HAND]:
+        try:
+            at = _place(HAND, value)
+        except DeviceError as error:
+            raise UserError(str(error), place) from None
+        return Confirmation(HAND, "[{:g}, {:g}, {:g}]".format(*at), place=at)
     if not isinstance(value, str) or not value:
         raise UserError(f"'{kinds[0]}' must be the name of a topic", place)
     if kinds == [MQTT]:

@@ -12,11 +12,10 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import CameraInfo, Image, LaserScan
 
 from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.depth_images import METRES
 from daidalos.nodes.depthimage_to_laserscan._scan import scan
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
-
-_METRES = {"16UC1": 0.001, "mono16": 0.001, "32FC1": 1.0}
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class DepthImageToLaserScan(Node):
         camera = self._camera
         if camera is None or self._scans.get_subscription_count() == 0:
             return
-        scale = _METRES.get(image.encoding)
+        scale = METRES.get(image.encoding)
         if scale is None or not camera.k[0] or self._settings.scan_height > image.height:
             self.get_logger().error(self._fault(image, camera), throttle_duration_sec=5.0)
             return
@@ -76,8 +75,8 @@ class DepthImageToLaserScan(Node):
         self._scans.publish(message)
 
     def _fault(self, image: Image, camera: CameraInfo) -> str:
-        if image.encoding not in _METRES:
-            return f"the depth image is encoded as '{image.encoding}', not as {', '.join(_METRES)}"
+        if image.encoding not in METRES:
+            return f"the depth image is encoded as '{image.encoding}', not as {', '.join(METRES)}"
         if not camera.k[0]:
             return "the camera is not calibrated: its focal length is 0"
         return (
