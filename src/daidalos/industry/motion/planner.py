@@ -110,6 +110,30 @@ class CornerReport:
     position: Array
 
 
+@dataclass(frozen=True)
+class PathRest:
+    """The rest of a path that an arm has left while it was stopped on it.
+
+    Attributes
+    ----------
+    joints : array of shape (6,)
+        Angles where it was left [rad].
+    position : float
+        Where that is on the path [m].
+    movements, pieces, length
+        The path.
+    ramp_time : float
+        Length of the mean of its motion [s].
+    """
+
+    joints: Array
+    position: float
+    movements: list[Movement]
+    pieces: list[Piece]
+    length: float
+    ramp_time: float
+
+
 @dataclass
 class Planner:
     """An arm in motion.
@@ -460,6 +484,23 @@ class Planner:
         self.joints = self.joints_at(np.array([self.now]))[0]
         self._movements, self._pieces, self._profile = [], [], None
         self._is_planned = True
+
+    def store(self) -> PathRest:
+        """Forget the path on which the arm is stopped, and return it."""
+        position = float(self._profile.at(np.array([self.now]))[0][0]) if self._profile is not None else self._length
+        ramp = self._profile.ramp_time if self._profile is not None else self.arm.ramp_time
+        movements, pieces = self._movements, self._pieces
+        self.clear()
+        self.is_stopped = False
+        return PathRest(self.joints, position, movements, pieces, self._length, ramp)
+
+    def restore(self, rest: PathRest) -> None:
+        """Take up a path where the arm has left it; the arm stays stopped until `resume`."""
+        self._movements, self._pieces, self._length = list(rest.movements), list(rest.pieces), rest.length
+        self._profile = Profile(self.now, rest.position, rest.ramp_time) if rest.movements else None
+        self.is_stopped = True
+        self._is_planned = True
+        self.version += 1
 
     # Planning
 

@@ -17,8 +17,8 @@ from daidalos.industry.motion.faults import MotionFault
 from daidalos.industry.motion.kinematics import confdata, forward
 from daidalos.industry.motion.orientations import Array
 from daidalos.industry.motion.pieces import Limits, sample_curve, sample_wrist_path
-from daidalos.industry.motion.planner import Movement, Planner
-from daidalos.industry.rapid.runtime.errors import FatalError
+from daidalos.industry.motion.planner import Movement, PathRest, Planner
+from daidalos.industry.rapid.runtime.errors import FatalError, RapidError
 from daidalos.industry.rapid.runtime.poses import Pose, pose_inverse, pose_product
 from daidalos.industry.rapid.runtime.robot import Event, Move, Robot, wobj_pose
 from daidalos.industry.robots import Arm
@@ -30,8 +30,14 @@ LOOK_AHEAD = 32
 SENSOR_PERIOD = 1e-3
 """Seconds between two looks at signals that depend on where the tool is."""
 
+WATCH_PERIOD = 0.01
+"""Seconds between two looks at world zones."""
+
 HOME = (0.0, 0.0, 0.0, 0.0, 30.0, 0.0)
 """Angles that an arm begins with [deg]."""
+
+_RETURN_TOLERANCE = math.radians(0.1)
+"""Distance of each axis from a kept path at which it is taken up [rad]."""
 
 _NO_AXES = [9e9] * 6
 
@@ -95,8 +101,15 @@ class ArmRobot:
         self._next_sample = 0
         self._tool = np.eye(4)
         self._events: list[tuple[Movement, Event]] = []
+        self._kept: list[tuple[PathRest, list[tuple[Movement, Event]]]] = []
+        self._watchers: list[Callable[[], None]] = []
 
     # Movements
+
+    @property
+    def title(self) -> str:
+        """Return the maker's name of the arm."""
+        return self.arm.title
 
     @property
     def count(self) -> int:
@@ -145,7 +158,7 @@ class ArmRobot:
     def _curve(self, move: Move, tool: Array, start: Array) -> Curve:
         if move.instruction == "MoveAbsJ":
             return JointCurve.between(self.arm, tool, start, np.radians(np.array(move.target[0], dtype=np.float64)))
-        position, orientation = _placed(move, move.target)
+        position, orientation = _placed(move.wobj, move.target)
         if move.instruction == "MoveJ":
             pose = flange_poses(position[None], orientation[None], tool)[0]
             wanted = _configuration(move.target) if move.settings.checks_joint else None
@@ -154,7 +167,7 @@ class ArmRobot:
         first, turned = np.array(now.position), np.array(now.orientation)
         if move.via is None:
             return Line(first, position, turned, orientation)
-        via, via_turned = _placed(move, move.via)
+        via, via_turned = _placed(move.wobj, move.via)
         return Circle.through((first, via, position), (turned, via_turned, orientation), move.settings.circle)
 
     def _sample(self, move: Move, movement: Movement, start: Array) -> None:
@@ -206,8 +219,8 @@ class ArmRobot:
     def next_event(self) -> float | None:
         """Return the time until the next trigger, or look at sensors, while the arm moves."""
         times = [self._due(*one) - self.planner.now for one in self._events]
-        if self._sensors and self.planner.braking() > 0.0:
-            times.append(SENSOR_PERIOD)
+        if (self._sensors or self._watchers) and self.planner.braking() > 0.0:
+            times.append(SENSOR_PERIOD if self._sensors else WATCH_PERIOD)
         finite = [max(one, 0.0) for one in times if math.isfinite(one)]
         return min(finite, default=None)
 
@@ -229,6 +242,8 @@ class ArmRobot:
             position = self._tool_pose()[0]
             for name, function in self._sensors.items():
                 self._set_signal(name, function(position))
+        for look in self._watchers:
+            look()
         due = [one for one in self._events if self._due(*one) <= self.planner.now + 1e-9]
         self._events = [one for one in self._events if one not in due]
         for _, event in due:
@@ -259,7 +274,45 @@ class ArmRobot:
         self.planner.clear()
         self._events = []
 
+    def store(self) -> None:
+        """Keep the rest of the path, where the arm is stopped on it."""
+        if self.planner.braking() > 0.0:
+            raise FatalError("StorePath: the arm still moves; StopMove comes first")
+        self._kept.append((self.planner.store(), self._events))
+        self._events = []
+
+    def restore(self) -> None:
+        """Take up the rest of the path that was kept latest, where the arm stands on it."""
+        if not self._kept:
+            raise FatalError("there is no path to restore; StorePath comes first")
+        rest, events = self._kept.pop()
+        away = float(np.abs(rest.joints - self._joints()).max())
+        if away > _RETURN_TOLERANCE:
+            raise FatalError(f"RestoPath: the arm is {math.degrees(away):.2f} deg from where the path was left")
+        self.planner.restore(rest)
+        self._events = events
+
+    def watch(self, look: Callable[[], None]) -> None:
+        """Have a function called every `WATCH_PERIOD` while the arm moves."""
+        self._watchers.append(look)
+
     # Positions
+
+    def target_of(self, joints: list[Any], tool: list[Any], wobj: list[Any]) -> list[Any]:
+        """Return the robtarget of a jointtarget."""
+        angles = np.radians(np.array(joints[0], dtype=np.float64))
+        at = pose_product(pose_inverse(wobj_pose(wobj)), pose_product(_pose(forward(self.arm, angles)), tool[1]))
+        return [at[0], at[1], [float(one) for one in confdata(self.arm, angles)], list(joints[1])]
+
+    def joints_of(self, target: list[Any], tool: list[Any], wobj: list[Any]) -> list[Any]:
+        """Return the jointtarget of a robtarget."""
+        position, orientation = _placed(wobj, target)
+        pose = flange_poses(position[None], orientation[None], matrix_of(tool[1]))[0]
+        try:
+            angles = joints_at(self.arm, pose, _configuration(target), self._joints())
+        except MotionFault as fault:
+            raise RapidError("ERR_ROBLIMIT", str(fault)) from None
+        return [np.degrees(angles).tolist(), list(target[3])]
 
     def robtarget(self, tool: list[Any], wobj: list[Any]) -> list[Any]:
         """Return where a tool is in a work object, with the configuration."""
@@ -283,9 +336,9 @@ def _shares(limits: Limits) -> tuple[float, float, float]:
     return limits.acceleration, limits.ramp, limits.tool_acceleration
 
 
-def _placed(move: Move, target: list[Any]) -> tuple[Array, Array]:
+def _placed(wobj: list[Any], target: list[Any]) -> tuple[Array, Array]:
     """Return position [m] and orientation (x, y, z, w) of a robtarget in the base."""
-    position, (w, x, y, z) = pose_product(wobj_pose(move.wobj), [target[0], target[1]])
+    position, (w, x, y, z) = pose_product(wobj_pose(wobj), [target[0], target[1]])
     if not all(map(math.isfinite, (*position, w, x, y, z))):
         raise FatalError("the target is not finite")
     return MM * np.array(position), np.array([x, y, z, w]) / math.hypot(w, x, y, z)

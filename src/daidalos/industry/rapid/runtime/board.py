@@ -40,14 +40,23 @@ class Board:
 
     def alias(self, name: str, key: str) -> None:
         """Connect data of a program to a signal."""
-        self._aliases[key] = self._key(name)
+        self._aliases[key.lower()] = self._key(name)
+
+    def remove_alias(self, key: str) -> None:
+        """Disconnect data of a program from a signal."""
+        self._aliases.pop(key.lower(), None)
+
+    def origin(self, name: object) -> tuple[str, str]:
+        """Return ``alias`` or ``board``, and the name of the signal."""
+        key = self._key(name)
+        return ("alias" if str(name).lower() in self._aliases else "board", self._known.get(key, str(name)))
 
     def values(self) -> dict[str, float]:
         """Return the values of all signals that have been used."""
         return {self._known.get(key, key): value for key, value in sorted(self._values.items())}
 
     def _key(self, name: object) -> str:
-        key = self._aliases.get(str(name), str(name).lower())
+        key = self._aliases.get(str(name).lower(), str(name).lower())
         if self._known and key not in self._known:
             raise RapidError(
                 "ERR_NO_ALIASIO_DEF", f"there is no signal '{name}'{hint(str(name), self._known.values())}"

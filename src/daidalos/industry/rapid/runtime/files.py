@@ -20,7 +20,7 @@ EOF_NUM = 9.998e36
 EOF_BIN = -1.0
 
 
-def _path(task: Task, name: str, file: str | None = None) -> Path:
+def resolve(task: Task, name: str, file: str | None = None) -> Path:
     """Return the path that a name stands for.
 
     Raises
@@ -70,7 +70,7 @@ def open_file(
     bin_: Any = None,
 ) -> None:
     """Open a file; without a word for what, to read and to write at its end."""
-    path = _path(task, object_, file_)
+    path = resolve(task, object_, file_)
     mode = "rb" if read_ else "wb" if write_ else "ab" if append_ else "ab+"
     if iodevice_.state is not None and not iodevice_.state.closed:
         raise RapidError("ERR_FILEOPEN", "the device is open already")
@@ -202,7 +202,7 @@ def is_file(
     charspec_: Any = None,
 ) -> bool:
     """Return whether there is a file, or a folder."""
-    path = _path(task, path_)
+    path = resolve(task, path_)
     if directory_:
         return path.is_dir()
     return path.is_file() if regfile_ else path.exists() and not (fifo_ or blockspec_ or charspec_)
@@ -212,55 +212,55 @@ def is_file(
 def file_size(task: Task, path_: str) -> float:
     """Return the size of a file in bytes."""
     with _named(path_):
-        return float(_path(task, path_).stat().st_size)
+        return float(resolve(task, path_).stat().st_size)
 
 
 @routine("RemoveFile")
 def remove_file(task: Task, path_: str) -> None:
     """Remove a file."""
     with _named(path_):
-        _path(task, path_).unlink()
+        resolve(task, path_).unlink()
 
 
 @routine("RenameFile")
 def rename_file(task: Task, oldpath_: str, newpath_: str) -> None:
     """Rename a file."""
-    new = _path(task, newpath_)
+    new = resolve(task, newpath_)
     if new.exists():
         raise RapidError("ERR_FILEEXIST", f"there is a '{newpath_}' already")
     with _named(oldpath_):
-        _path(task, oldpath_).rename(new)
+        resolve(task, oldpath_).rename(new)
 
 
 @routine("CopyFile")
 def copy_file(task: Task, oldpath_: str, newpath_: str) -> None:
     """Copy a file."""
-    new = _path(task, newpath_)
+    new = resolve(task, newpath_)
     if new.exists():
         raise RapidError("ERR_FILEEXIST", f"there is a '{newpath_}' already")
     with _named(oldpath_):
-        shutil.copyfile(_path(task, oldpath_), new)
+        shutil.copyfile(resolve(task, oldpath_), new)
 
 
 @routine("MakeDir")
 def make_folder(task: Task, path_: str) -> None:
     """Make a folder."""
     with _named(path_):
-        _path(task, path_).mkdir()
+        resolve(task, path_).mkdir()
 
 
 @routine("RemoveDir")
 def remove_folder(task: Task, path_: str) -> None:
     """Remove an empty folder."""
     with _named(path_):
-        _path(task, path_).rmdir()
+        resolve(task, path_).rmdir()
 
 
 @routine("OpenDir")
 def open_folder(task: Task, dev_: Handle, path_: str) -> None:
     """Open a folder, to read the names in it."""
     with _named(path_):
-        names = sorted(one.name for one in _path(task, path_).iterdir())
+        names = sorted(one.name for one in resolve(task, path_).iterdir())
     dev_.state = iter([".", "..", *names])
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from daidalos.industry.rapid.runtime.errors import RapidError
 from daidalos.industry.rapid.runtime.registry import routine
+from daidalos.industry.rapid.runtime.values import copied
 
 if TYPE_CHECKING:
     from daidalos.industry.rapid.runtime.task import Task
@@ -24,6 +25,11 @@ class Interrupt:
     period: float | None = None
     is_single: bool = False
     is_asleep: bool = False
+    condition: Callable[[float], bool] | None = None
+    """Of a signal's value; without it, each change counts."""
+    watched: tuple[Any, Any] | None = None
+    """Reference of a persistent."""
+    seen: Any = None
 
 
 class Interrupts:
@@ -72,6 +78,10 @@ class Interrupts:
             if one.due is not None and one.due <= self._task.time:
                 one.due = one.due + one.period if one.period and not one.is_single else None
                 self._occur(number, one)
+        for number, one in self._by_number.items():
+            if one.watched is not None and (present := one.watched[0][one.watched[1]]) != one.seen:
+                one.seen = copied(present)
+                self._occur(number, one)
         if self.is_serving or not self.is_enabled:
             return
         self.is_serving = True
@@ -87,6 +97,8 @@ class Interrupts:
     def _on_signal(self, key: str, value: float) -> None:
         for number, one in list(self._by_number.items()):
             if one.signal == key and (one.edge is None or one.edge == 2.0 or one.edge == value):
+                if one.condition is not None and not one.condition(value):
+                    continue
                 if one.is_single:
                     one.signal = ""
                 self._occur(number, one)
@@ -124,6 +136,58 @@ def i_group(task: Task, signal_: str, interrupt_: Any, single_: Any = None, sing
     """Order an interrupt by a change of a group of signals."""
     one = task.interrupts.find(interrupt_)
     one.signal, one.edge, one.is_single = str(signal_).lower(), None, bool(single_ or singlesafe_)
+
+
+@routine("ISignalAI", "ISignalAO")
+def i_analog(
+    task: Task,
+    signal_: str,
+    condition_: float,
+    highvalue_: float,
+    lowvalue_: float,
+    deltavalue_: float,
+    interrupt_: Any,
+    single_: Any = None,
+    singlesafe_: Any = None,
+    dpos_: Any = None,
+    dneg_: Any = None,
+) -> None:
+    """Order an interrupt by an analog signal: where a condition holds, and it has changed by more than a difference."""
+    reference = [task.signals.value(signal_)]
+
+    def holds(value: float) -> bool:
+        change = value - reference[0]
+        fits = _ANALOG[condition_](value, highvalue_, lowvalue_)
+        is_large = abs(change) > deltavalue_ and not (dpos_ and change < 0) and not (dneg_ and change > 0)
+        if fits and is_large:
+            reference[0] = value
+        return fits and is_large
+
+    if condition_ not in _ANALOG:
+        raise RapidError("ERR_ARGVALERR", f"the condition is AIO_ABOVE_HIGH to AIO_ALWAYS, not {condition_:g}")
+    one = task.interrupts.find(interrupt_)
+    one.signal, one.edge, one.is_single = str(signal_).lower(), None, bool(single_ or singlesafe_)
+    one.condition = holds
+
+
+_ANALOG: dict[float, Callable[[float, float, float], bool]] = {
+    1.0: lambda value, high, low: value > high,
+    2.0: lambda value, high, low: value < high,
+    3.0: lambda value, high, low: value > low,
+    4.0: lambda value, high, low: value < low,
+    5.0: lambda value, high, low: low < value < high,
+    6.0: lambda value, high, low: value < low or value > high,
+    7.0: lambda value, high, low: True,
+}
+"""Conditions by AIO_ABOVE_HIGH and so on."""
+
+
+@routine("IPers")
+def i_persistent(task: Task, name_: Any, interrupt_: Any) -> None:
+    """Order an interrupt by a change of a persistent."""
+    one = task.interrupts.find(interrupt_)
+    one.watched = name_ if isinstance(name_, tuple) else ([name_], 0)
+    one.seen = copied(one.watched[0][one.watched[1]])
 
 
 @routine("ISleep")

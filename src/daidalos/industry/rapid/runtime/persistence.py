@@ -22,10 +22,9 @@ def save_persistents(task: Task) -> list[Path]:
     UserError
         If a file cannot be written; it then is as it was.
     """
-    by_node = {id(node): value for _, node, value in task.persistents()}
     changed = []
     for parsed in task.modules:
-        text = _with_values(parsed, by_node)
+        text = text_with_values(task, parsed)
         if text != parsed.source.text:
             path = Path(parsed.source.file)
             write_source(path, text, parsed.source.encoding)
@@ -33,7 +32,9 @@ def save_persistents(task: Task) -> list[Path]:
     return changed
 
 
-def _with_values(parsed: Parsed, values: dict[int, object]) -> str:
+def text_with_values(task: Task, parsed: Parsed) -> str:
+    """Return the text of a module with the present values of its persistents."""
+    values = {id(node): value for _, node, value in task.persistents()}
     text = parsed.source.text
     nodes = [one for module in parsed.tree.modules for one in module.items if isinstance(one, tree.Data)]
     for node in sorted(nodes, key=lambda one: one.start, reverse=True):

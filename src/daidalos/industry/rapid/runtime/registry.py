@@ -17,7 +17,8 @@ Implementation = TypeVar("Implementation", bound=Callable[..., Any])
 _routines: dict[str, Callable[..., Any]] = {}
 _MODULES = (
     "mathematics", "strings", "positions", "signals", "dialogs", "timing", "movements", "interrupts", "bytes", "files",
-    "sockets", "triggers", "searches", "synchronising",
+    "sockets", "triggers", "searches", "synchronising", "controller",
+    "arm_functions", "welding", "world_zones",
 )  # fmt: skip
 _TIMED = ("signals", "dialogs", "timing", "interrupts", "files", "sockets")
 _TIMED_ROUTINES = (

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
+from daidalos.industry.rapid.runtime.errors import FatalError
 from daidalos.industry.rapid.runtime.poses import IDENTITY, Pose, angle_between, pose_inverse, pose_product
 
 
@@ -104,6 +105,11 @@ class Robot(Protocol):
     """What carries out movements while time passes, which only `advance` lets it do; times are in seconds."""
 
     @property
+    def title(self) -> str:
+        """Return the maker's name of it."""
+        ...
+
+    @property
     def count(self) -> int:
         """Return how many movements were taken."""
         ...
@@ -176,6 +182,32 @@ class Robot(Protocol):
         """Return where its joints are."""
         ...
 
+    def target_of(self, joints: list[Any], tool: list[Any], wobj: list[Any]) -> list[Any]:
+        """Return the robtarget of a jointtarget."""
+        ...
+
+    def joints_of(self, target: list[Any], tool: list[Any], wobj: list[Any]) -> list[Any]:
+        """Return the jointtarget of a robtarget.
+
+        Raises
+        ------
+        RapidError
+            ERR_ROBLIMIT, where it is out of reach.
+        """
+        ...
+
+    def store(self) -> None:
+        """Keep the rest of the path on which the robot is stopped, and forget it."""
+        ...
+
+    def restore(self) -> None:
+        """Take up the rest of the path that was kept latest."""
+        ...
+
+    def watch(self, look: Callable[[], None]) -> None:
+        """Have a function called again and again while the robot moves."""
+        ...
+
 
 @dataclass
 class SimpleRobot:
@@ -195,6 +227,13 @@ class SimpleRobot:
     _left: float = 0.0
     _events: list[tuple[float, Event]] = field(default_factory=list)
     _is_stopped: bool = False
+    _kept: list[tuple[float, list[tuple[float, Event]]]] = field(default_factory=list)
+    _watchers: list[Callable[[], None]] = field(default_factory=list)
+
+    @property
+    def title(self) -> str:
+        """Return that it is none of a maker."""
+        return "robot without joints"
 
     @property
     def count(self) -> int:
@@ -242,6 +281,8 @@ class SimpleRobot:
 
     def serve(self) -> None:
         """Do what is due."""
+        for look in self._watchers:
+            look()
         due = [one for one in self._events if self._left <= one[0] + 1e-9]
         self._events = [one for one in self._events if one not in due]
         for _, event in sorted(due, key=lambda one: -one[0]):
@@ -279,6 +320,27 @@ class SimpleRobot:
     def jointtarget(self) -> list[Any]:
         """Return the joint positions of the latest movement by joints."""
         return [list(self._joints[0]), list(self._joints[1])]
+
+    def target_of(self, joints: list[Any], tool: list[Any], wobj: list[Any]) -> list[Any]:
+        """Refuse: there are no joints."""
+        raise FatalError("the robtarget of angles needs an arm, such as --robot irb120")
+
+    joints_of = target_of
+
+    def store(self) -> None:
+        """Keep the rest of the movement."""
+        self._kept.append((self._left, self._events))
+        self.clear()
+
+    def restore(self) -> None:
+        """Take up the rest of the movement."""
+        if not self._kept:
+            raise FatalError("there is no path to restore; StorePath comes first")
+        self._left, self._events = self._kept.pop()
+
+    def watch(self, look: Callable[[], None]) -> None:
+        """Have a function called when time has passed."""
+        self._watchers.append(look)
 
     def _turn(self, move: Move) -> tuple[float, float]:
         before, after = self._joints[0], move.target[0]

@@ -8,6 +8,7 @@ import math
 import re
 import socket
 import sys
+import weakref
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -127,6 +128,9 @@ class Task:
         self.is_waiting = False
         """Whether real time passes just now, or the operator is asked."""
         self.errno = 0.0
+        self.remaining_retries = float(MAX_RETRIES)
+        self.resets_retries = False
+        self._forgiven: weakref.WeakKeyDictionary[Callable[[], Any], int] = weakref.WeakKeyDictionary()
         self.intno = 0.0
         self.settings: dict[str, Any] = {}
         self.name = "T_ROB1"
@@ -279,12 +283,17 @@ class Task:
             raise error
         if numbers and not is_listed:
             raise error
+        tries -= self._forgiven.get(handler, 0)
+        self.remaining_retries = float(max(MAX_RETRIES - tries, 0))
         if tries > MAX_RETRIES:
             raise FatalError(f"ERR_EXCRTYMAX: RETRY more than {MAX_RETRIES} times after {known.name}: {known.message}")
         known.is_propagated = False
         self.errno = known.number
         self.progress += 1
+        self.resets_retries = False
         action = handler()
+        if self.resets_retries:
+            self._forgiven[handler] = self._forgiven.get(handler, 0) + tries + 1
         if action is None:
             raise FatalError(
                 f"{known.name}: {known.message}; its error handler ends without RETRY, TRYNEXT, RETURN or RAISE"
@@ -396,6 +405,10 @@ class Task:
             and owned.symbol.kind == "PERS"
             and isinstance(owned.symbol.node, tree.Data)
         ]
+
+    def declared_data(self) -> list[tuple[str, DataSymbol]]:
+        """Return all data of modules, each with the name of its module."""
+        return [(one.module, one.symbol) for one in self._owned() if isinstance(one.symbol, DataSymbol)]
 
     def _owned(self) -> list[Owned]:
         scopes = [self._checker.task, *self._checker.locals.values()]
