@@ -51,7 +51,8 @@ def test_a_target_out_of_reach_has_a_number_or_is_an_error() -> None:
 def test_world_zones_set_outputs_while_the_tool_is_inside(define: str, inside: float) -> None:
     lines = f"""MoveJ {AT.format(350, -100, 300)}, v1000, fine, tool0; {define}
     WZDOSet \\Stat, z \\Inside, s, doIn, 1; CONNECT i WITH seen; ISignalDO doIn, 2, i; ClkStart c;
-    first := doIn = 1; MoveL {AT.format(350, 100, 300)}, v100, fine, tool0; TPWrite "" \\Num:=on; TPWrite "" \\Bool:=first;"""
+    first := doIn = 1; MoveL {AT.format(350, 100, 300)}, v100, fine, tool0;
+    TPWrite "" \\Num:=on; TPWrite "" \\Bool:=first;"""
     declarations = """VAR shapedata s; VAR wzstationary z; VAR intnum i; VAR clock c; VAR num on; VAR bool first;
     VAR num since; TRAP seen IF doIn = 1 since := ClkRead(c); IF doIn = 0 on := on + ClkRead(c) - since;
     ENDTRAP"""
@@ -77,7 +78,8 @@ def test_a_forbidden_zone_stops_the_arm_at_its_border() -> None:
 
 
 def test_home_zones_see_angles() -> None:
-    lines = """WZHomeJointDef \\Inside, s, [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]], [[2,2,2,2,2,2],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    lines = """WZHomeJointDef \\Inside, s, [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],
+    [[2,2,2,2,2,2],[9E9,9E9,9E9,9E9,9E9,9E9]];
     WZDOSet \\Stat, z \\Inside, s, doHome, 1; TPWrite "" \\Num:=doHome;
     MoveAbsJ [[5,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]], v100, fine, tool0; TPWrite "" \\Num:=doHome;"""
     assert on_arm(lines, "VAR shapedata s; VAR wzstationary z;") == ["1", "0"]
@@ -114,7 +116,8 @@ def test_a_path_that_was_left_is_not_taken_up_from_elsewhere() -> None:
 def test_a_circle_through_points() -> None:
     points = [[10 + 5 * math.cos(a), 20 + 5 * math.sin(a), 3.0] for a in (0.0, 1.0, 2.5, 4.0)]
     lines = f"""VAR pos p{{4}} := {points}; VAR pos c; VAR num r; VAR pos n; FitCircle p, c, r, n;
-    TPWrite "" \\Num:=Round(r \\Dec:=6); TPWrite "" \\Num:=Round(c.x \\Dec:=6); TPWrite "" \\Num:=Abs(Round(n.z \\Dec:=6));"""
+    TPWrite "" \\Num:=Round(r \\Dec:=6); TPWrite "" \\Num:=Round(c.x \\Dec:=6);
+    TPWrite "" \\Num:=Abs(Round(n.z \\Dec:=6));"""
     assert written(lines) == ["5", "10", "1"]
 
 
