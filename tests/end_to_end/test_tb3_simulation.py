@@ -1,4 +1,4 @@
-"""The launch file that Nav2's tutorials begin with, in lock-step."""
+"""The launch files that Nav2's tutorials begin with, in lock-step."""
 
 from __future__ import annotations
 
@@ -29,6 +29,13 @@ def set_initial_pose(clock: Scenario, x: float, y: float) -> None:
     publisher.publish(pose)
 
 
+def goal_at(x: float, y: float) -> NavigateToPose.Goal:
+    pose = PoseStamped()
+    pose.header.frame_id = "map"
+    pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w = x, y, 1.0
+    return NavigateToPose.Goal(pose=pose)
+
+
 @pytest.mark.scenario(timeout=120, seed=1)
 @pytest.mark.parametrize(("slam", "goal"), [(False, (-0.5, -0.5)), (True, (1.5, 0.0))])
 def test_a_goal_is_reached(
@@ -40,8 +47,18 @@ def test_a_goal_is_reached(
     if not slam:  # with SLAM, the map begins where the robot does
         set_initial_pose(clock, -2.0, -0.5)
     transform("map", "base_link").wait(60.0)
-    wanted = PoseStamped()
-    wanted.header.frame_id = "map"
-    wanted.pose.position.x, wanted.pose.position.y, wanted.pose.orientation.w = *goal, 1.0
-    action("/navigate_to_pose", NavigateToPose).send_goal(NavigateToPose.Goal(pose=wanted), within=60.0)
+    action("/navigate_to_pose", NavigateToPose).send_goal(goal_at(*goal), within=60.0)
     assert math.dist((robot.position.x, robot.position.y), (-0.5, -0.5)) < 0.4
+
+
+@pytest.mark.scenario(timeout=120, seed=1)
+def test_a_turtlebot_4_reaches_a_goal_in_the_depot(
+    world: World, launch: Any, action: Any, clock: Scenario, transform: Any
+) -> None:
+    launch("nav2_bringup", "tb4_simulation_launch.py", use_rviz=False)
+    robot = world.wait_for("turtlebot4")
+    robot.never_touches()
+    set_initial_pose(clock, -8.0, 0.0)
+    transform("map", "base_link").wait(60.0)
+    action("/navigate_to_pose", NavigateToPose).send_goal(goal_at(-6.5, 0.5), within=60.0)
+    assert math.dist((robot.position.x, robot.position.y), (-6.5, 0.5)) < 0.4

@@ -41,6 +41,8 @@ ROBOTS = [
     HUMANOID,
     TRUCK,
     "tb3_description/urdf/turtlebot3_waffle_base.urdf.xacro",
+    "nav2_minimal_tb4_description/urdf/standard/turtlebot4.urdf.xacro",
+    "daidalos_barn/urdf/jackal.urdf.xacro",
     "turtlebot3_description/urdf/turtlebot3_burger.urdf.xacro",
 ]
 

@@ -2,12 +2,17 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from launch import LaunchContext
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.actions import Node
+
+from daidalos.cli.ros2 import main
+from daidalos.description import sdf
+from daidalos.mapping.map_file import load_map
 
 FOLDER = Path(__file__).parents[2] / "src" / "daidalos" / "share" / "nav2_bringup" / "launch"
 ALWAYS = {
@@ -72,3 +77,26 @@ def started_by(name: str, context: LaunchContext) -> list[Node]:
         elif isinstance(action, OpaqueFunction):
             started += [node for node in action.execute(context) if isinstance(node, Node)]
     return started
+
+
+def test_the_map_of_the_depot_is_that_of_its_world() -> None:
+    world = sdf.load(FOLDER.parents[1] / "nav2_minimal_tb4_sim" / "worlds" / "depot.sdf")
+    grid = load_map(FOLDER.parent / "maps" / "depot.yaml")
+    occupied = np.zeros(grid.data.shape, dtype=bool)
+    height, width = occupied.shape
+    x, y = (grid.origin[axis] + grid.resolution * (np.arange(n) + 0.5) for axis, n in ((0, width), (1, height)))
+    for model in world.models:
+        for collision in model.links["link"].collisions if model.name != "ground_plane" else ():
+            (cx, cy, _), (length, depth, _) = collision.pose.position, collision.geometry.size
+            across = np.abs(x - cx) <= 0.5 * length + 1e-6
+            occupied |= (np.abs(y - cy) <= 0.5 * depth + 1e-6)[:, None] & across
+    assert np.array_equal(grid.data == 100, occupied)
+
+
+@pytest.mark.parametrize("name", ["tb4_simulation_launch.py", "tb4_loopback_simulation.launch.py"])
+def test_the_tb4_launch_files_have_arguments_of_their_own(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", "nav2_bringup", name, "--show-args"]) in (0, None)
+    written = capsys.readouterr().out
+    assert "depot.yaml" in written
+    for argument in ("map", "namespace", "params_file", "autostart", "use_composition", "use_rviz"):
+        assert f"'{argument}'" in written

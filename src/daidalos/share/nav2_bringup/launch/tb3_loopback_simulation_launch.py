@@ -32,6 +32,11 @@ def generate_launch_description():
     arguments = [
         ("namespace", "", "namespace of all nodes"),
         ("map", in_package("nav2_bringup", "maps", "turtlebot3_world.yaml"), "map file"),
+        (
+            "model",
+            in_package("turtlebot3_description", "urdf", "turtlebot3_waffle.urdf.xacro"),
+            "xacro of the robot",
+        ),
         ("params_file", in_package("nav2_bringup", "params", "nav2_params.yaml"), "parameter file"),
         ("autostart", "true", "whether the nodes are activated at once"),
         ("use_composition", "True", "whether the nodes share a process"),
@@ -67,12 +72,14 @@ def generate_launch_description():
 
 def robot_state_publisher():
     """Return the publisher of the robot's description."""
-    xacro = in_package("turtlebot3_description", "urdf", "turtlebot3_waffle.urdf.xacro")
     return Node(
         package="robot_state_publisher",
         executable="robot_state_publisher",
         namespace=LaunchConfiguration("namespace"),
-        parameters=[CLOCK, {"robot_description": ParameterValue(Command(["xacro ", xacro]), value_type=str)}],
+        parameters=[
+            CLOCK,
+            {"robot_description": ParameterValue(Command(["xacro ", LaunchConfiguration("model")]), value_type=str)},
+        ],
         remappings=REMAPPINGS,
         output="screen",
         condition=IfCondition(LaunchConfiguration("use_robot_state_pub")),

@@ -15,11 +15,9 @@ def in_package(package, *parts):
     return PathJoinSubstitution([FindPackageShare(package), *parts])
 
 
-def included(package, name, condition=None, **arguments):
+def included(path, condition=None, **arguments):
     """Return the inclusion of a launch file."""
-    return IncludeLaunchDescription(
-        in_package(package, "launch", name), launch_arguments=arguments.items(), condition=condition
-    )
+    return IncludeLaunchDescription(path, launch_arguments=arguments.items(), condition=condition)
 
 
 def generate_launch_description():
@@ -34,6 +32,11 @@ def generate_launch_description():
         ("use_composition", "True", "whether the nodes share a process"),
         ("use_respawn", "False", "whether a process that ends is started again"),
         ("rviz_config_file", in_package("nav2_bringup", "rviz", "nav2_default_view.rviz"), "file with the displays"),
+        (
+            "robot_launch",
+            in_package("turtlebot3_gazebo", "launch", "turtlebot3_world.launch.py"),
+            "launch file of simulator and robot",
+        ),
         ("use_simulator", "True", "whether simulator and robot are started"),
         ("use_rviz", "True", "whether RViz is opened"),
         ("headless", "True", "whether the simulator has no window of its own"),
@@ -46,21 +49,21 @@ def generate_launch_description():
         [
             *(DeclareLaunchArgument(name, default_value=text, description=what) for name, text, what in arguments),
             included(
-                "turtlebot3_gazebo",
-                "turtlebot3_world.launch.py",
+                value("robot_launch"),
                 IfCondition(value("use_simulator")),
                 use_composition="False",
                 gui=NotSubstitution(value("headless")),
                 **{name: value(name) for name in ("world", "x_pose", "y_pose", "yaw")},
             ),
             included(
-                "nav2_bringup",
-                "rviz_launch.py",
+                in_package("nav2_bringup", "launch", "rviz_launch.py"),
                 IfCondition(value("use_rviz")),
                 namespace=value("namespace"),
                 rviz_config=value("rviz_config_file"),
                 use_sim_time=value("use_sim_time"),
             ),
-            included("nav2_bringup", "bringup_launch.py", **{name: value(name) for name in PASSED}),
+            included(
+                in_package("nav2_bringup", "launch", "bringup_launch.py"), **{name: value(name) for name in PASSED}
+            ),
         ]
     )
