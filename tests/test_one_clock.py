@@ -19,6 +19,9 @@ OTHER_CLOCKS = {
 }
 ALLOWED = {
     "industry/assistance/laser_projector.py": "the time stamps of frames, which a projector expects in real time",
+    "industry/assistance/light_tower.py": "the repetition of DMX levels that Art-Net asks for",
+    "industry/egm/client.py": "how long a controller is silent, and the time stamp of guidance",
+    "industry/egm/controller_server.py": "the cycle of a controller, which does not wait",
     "industry/lighting/device.py": "how long a broker is lost, and how often the state is published",
     "industry/lighting/embedded_broker.py": "one turn of an event loop at its end",
     "industry/lighting/engine.py": "the pace of DMX frames, which lamps expect in real time",
@@ -26,6 +29,7 @@ ALLOWED = {
     "industry/rsi/controller_server.py": "the cycle of a controller, which does not wait",
     "industry/welding/rapid_paths.py": "the computing time of a program that may be endless",
     "navigation/planners/search.py": "the computing time of a search, which max_planning_time limits",
+    "nodes/abb_hardware_interface/_hardware.py": "how long a controller is waited for",
     "nodes/asset_folders.py": "the age of a file",
     "nodes/daidalos_demo/_measuring.py": "the computing time of other processes",
     "nodes/daidalos_demo/_robot.py": "when to ask again whether other processes are up",

@@ -26,7 +26,11 @@ HARDWARE: Kind[Hardware] = Kind(
     "daidalos.control.contracts:Hardware",
     "stands between controllers and motors; named by the <plugin> of a <ros2_control> element",
     partial(
-        classes_in, "daidalos.control.hardware", "daidalos.nodes.controller_manager", "daidalos.nodes.daidalos_lighting"
+        classes_in,
+        "daidalos.control.hardware",
+        "daidalos.nodes.controller_manager",
+        "daidalos.nodes.daidalos_lighting",
+        "daidalos.nodes.abb_hardware_interface",
     ),
 )
 KINDS = (CONTROLLERS, HARDWARE)

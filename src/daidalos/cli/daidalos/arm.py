@@ -6,6 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
+from daidalos.cli.daidalos.arm_egm import add_egm_arguments
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
@@ -41,6 +42,10 @@ class ArmVerb:
             "--arm-angle", type=_finite, metavar="DEG", help="arm angle of an arm with seven axes (default: any)"
         )
         inverse.set_defaults(_command=_inverse)
+        egm = commands.add_parser(
+            "egm", help="ABB's Externally Guided Motion, with a simulated controller or a real one"
+        )
+        add_egm_arguments(egm)
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run the command."""

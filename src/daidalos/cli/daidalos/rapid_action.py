@@ -26,6 +26,8 @@ DELAY_S = 0.15
 WAIT_S = 20.0
 _START_SPEED = 0.3
 _NEAR = 1e-3
+_AT_REST = 1e-6
+"""Speed up to which an arm stands [rad/s]."""
 
 
 class Follower:
@@ -135,9 +137,13 @@ class Follower:
             self._seen = robot.planner.version
             self._send_plan(robot, remaining)
         self._robot_time += seconds
-        self._wait_until(self._start_ns - int(DELAY_S * 1e9) + int(self._robot_time * 1e9))
+        self._wait_until(self._due_ns())
         if self._failure:
             raise UserError(self._failure)
+
+    def _due_ns(self) -> int:
+        """Return the time at which the program has come as far as it has."""
+        return self._start_ns - int(DELAY_S * 1e9) + int(self._robot_time * 1e9)
 
     def finish(self) -> None:
         """Wait until the controller has come to the end of the plan."""
@@ -160,6 +166,9 @@ class Follower:
         now = robot.planner.now
         ahead = now + np.linspace(0.0, remaining, max(2, int(np.ceil(remaining / PERIOD_S)) + 1))
         joints, speeds, _ = robot.planner.motion_at(ahead)
+        late = self._now_ns() - self._due_ns()
+        if late > 0 and not np.abs(speeds[0]).max() > _AT_REST:
+            self._start_ns += late  # planning took that long while the arm stood
         past = [one for one in robot.samples if one.times[-1] > now - 2.0 * DELAY_S]
         times = np.concatenate([*(one.times for one in past), ahead])
         joints = np.concatenate([*(one.joints for one in past), joints])

@@ -1,0 +1,1 @@
+"""Hardware of ABB controllers for ros2_control."""
