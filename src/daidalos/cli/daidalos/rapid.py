@@ -18,7 +18,7 @@ class RapidVerb:
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
         """Declare the arguments of `daidalos rapid`."""
         commands = parser.add_subparsers(
-            title="commands", required=True, metavar="check | format | run | trace | write | draw | server"
+            title="commands", required=True, metavar="check | format | run | trace | write | draw | server | debug"
         )
         check = commands.add_parser("check", help="find errors; exit status 0 without errors, else 2")
         check.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
@@ -87,6 +87,9 @@ class RapidVerb:
 
         server = commands.add_parser("server", help="language server for editors, on standard input and output")
         server.set_defaults(_command=_serve)
+
+        debug = commands.add_parser("debug", help="debug adapter for editors, on standard input and output")
+        debug.set_defaults(_command=_debug)
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run the command."""
@@ -205,6 +208,12 @@ def _serve(args: argparse.Namespace) -> int:
 
     serve()
     return 0
+
+
+def _debug(args: argparse.Namespace) -> int:
+    from daidalos.cli.daidalos.rapid_debug import debug_programs
+
+    return debug_programs()
 
 
 def _diff(name: str, before: str, after: str) -> Iterator[str]:

@@ -31,7 +31,7 @@ def load_task(args: argparse.Namespace, pace: Callable[[float], None] | None, sa
 
 
 def load_tasks(
-    args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float
+    args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float, is_debugged: bool = False
 ) -> dict[str, Task] | None:
     """Return the tasks that the arguments describe; None, with the reasons printed, where one cannot run."""
     from daidalos.industry.rapid.inspection import read_signals
@@ -54,7 +54,7 @@ def load_tasks(
             return None
         robot = make_robot(arm_of(args.robot, name), args.sensor, board, sampling)
         try:
-            task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time)
+            task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time, is_debugged)
         except FatalError as error:
             print(f"error: {error}", file=sys.stderr)
             return None

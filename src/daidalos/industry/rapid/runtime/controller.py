@@ -139,7 +139,7 @@ def set_data_search(task: Task, type_: str, object_: str | None = None, perssym_
     pattern = re.compile(object_ or ".*", re.IGNORECASE)
     task.settings["symbols"] = [
         symbol.name
-        for module, symbol in task.declared_data()
+        for module, symbol, _ in task.stored_data()
         if symbol.type.name == type_.lower()
         and pattern.fullmatch(symbol.name)
         and (not kinds or symbol.kind in kinds)

@@ -85,6 +85,13 @@ def referenced_names(routine: tree.Routine) -> set[str]:
     return found
 
 
+def local_names(routine: tree.Routine) -> set[str]:
+    """Return the names of all parameters and local data."""
+    bodies = [routine.body, *(handler.body for handler in routine.handlers)]
+    data = {node.name.key for body in bodies for node in tree.walk(body) if isinstance(node, tree.Data)}
+    return data | {one.name.key for one in routine.parameters()}
+
+
 def labels(body: list[tree.Statement]) -> Iterator[str]:
     """Yield the labels directly in a list of statements."""
     yield from (one.name.key for one in body if isinstance(one, tree.Label))

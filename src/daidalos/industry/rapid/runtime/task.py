@@ -17,7 +17,7 @@ from types import FrameType, TracebackType
 from typing import IO, TYPE_CHECKING, Any
 
 from daidalos.common.suggestions import hint
-from daidalos.industry.rapid import predefined, tree
+from daidalos.industry.rapid import flow, predefined, tree
 from daidalos.industry.rapid.checking import Checker
 from daidalos.industry.rapid.expressions import ExpressionChecker
 from daidalos.industry.rapid.parsing import Parsed
@@ -40,7 +40,7 @@ from daidalos.industry.rapid.runtime.pendant import Pendant, TextPendant
 from daidalos.industry.rapid.runtime.registry import is_timed, routines
 from daidalos.industry.rapid.runtime.robot import Robot, SimpleRobot
 from daidalos.industry.rapid.runtime.translation import FILE, Translation, translate
-from daidalos.industry.rapid.runtime.values import copied, counted, default_value, index_of
+from daidalos.industry.rapid.runtime.values import copied, counted, default_value, index_of, is_scalar
 from daidalos.industry.rapid.symbols import DataSymbol, Owned, RoutineSymbol, Type
 from daidalos.industry.rapid.types import TypeTable
 
@@ -98,6 +98,8 @@ class Task:
         Folder that files of the program are below; without it, the present one.
     limit
         Robot time in seconds after which the run ends; None for none.
+    is_debugged
+        Whether all local data is kept so that a debugger can change it.
     """
 
     def __init__(
@@ -111,6 +113,7 @@ class Task:
         now: datetime = EPOCH,
         home: Path | None = None,
         limit: float | None = None,
+        is_debugged: bool = False,
     ) -> None:
         self.modules = modules
         self.robot: Robot = robot if robot is not None else SimpleRobot()
@@ -133,12 +136,14 @@ class Task:
         self._forgiven: weakref.WeakKeyDictionary[Callable[[], Any], int] = weakref.WeakKeyDictionary()
         self.intno = 0.0
         self.settings: dict[str, Any] = {}
+        self.tracer: Callable[..., Any] | None = None
+        """Trace function of Python that runs with the program."""
         self.name = "T_ROB1"
         self.cell: Cell | None = None
         """The tasks that run at the same time."""
         self._pace = pace
         self._checker = checker
-        self._translation: Translation = translate(modules, checker)
+        self._translation: Translation = translate(modules, checker, is_debugged)
         self._types = checker.type_table(checker.task)
         self._namespace = self._make_namespace()
         exec(compile(self._translation.text(), FILE, "exec"), self._namespace)
@@ -163,7 +168,13 @@ class Task:
 
     def _run(self, procedure: Callable[[], Any]) -> Outcome:
         try:
-            procedure()
+            if self.tracer is not None:
+                sys.settrace(self.tracer)
+            try:
+                procedure()
+            finally:
+                if self.tracer is not None:
+                    sys.settrace(None)
             self.wait_for_robot(self.robot.remaining)
         except ProgramEnd as end:
             return Outcome(end.reason, "" if end.reason == "EXIT" else self._where(end), self.time)
@@ -358,7 +369,59 @@ class Task:
             frame = frame.f_back
         return self.place_of(frame.f_lineno) if frame is not None else ""
 
+    def place_at(self, line: int) -> tuple[str, int]:
+        """Return the file and the line of a line of the translated program."""
+        return self._translation.places[line - 1]
+
+    def lines_with_code(self, file: str) -> set[int]:
+        """Return the lines of a file in which a statement begins."""
+        sources = [one for one in self.modules if one.source.file == file]
+        routines = (
+            (parsed, one)
+            for parsed in sources
+            for module in parsed.tree.modules
+            for one in module.items
+            if isinstance(one, tree.Routine)
+        )
+        return {
+            parsed.source.place(node.start)[0]
+            for parsed, routine in routines
+            for node in flow.statements([*routine.body, *(one for handler in routine.handlers for one in handler.body)])
+            if not isinstance(node, tree.Data | tree.Label)
+        }
+
+    def routine_at(self, file: str, line: int) -> tree.Routine | None:
+        """Return the routine that a line of a file is in."""
+        for parsed in self.modules:
+            if parsed.source.file != file:
+                continue
+            start, end = parsed.source.offset(line, 1), parsed.source.offset(line + 1, 1)
+            items = (item for module in parsed.tree.modules for item in module.items)
+            return next(
+                (one for one in items if isinstance(one, tree.Routine) and one.start < end and one.end > start), None
+            )
+        return None
+
     # Data
+
+    @property
+    def types(self) -> TypeTable:
+        """Return the data types that the program knows."""
+        return self._types
+
+    @property
+    def store(self) -> dict[str, Any]:
+        """Return the values of all data of modules by the names of the translated program."""
+        return self._namespace
+
+    def stored_data(self) -> list[tuple[str, DataSymbol, str]]:
+        """Return all data of modules, each with its module and the name of its value in `store`."""
+        found = ((one, one.symbol) for one in self._owned())
+        return [(one.module, symbol, global_name(one)) for one, symbol in found if isinstance(symbol, DataSymbol)]
+
+    def is_scalar(self, type_: Type) -> bool:
+        """Return whether values of a type are single ones."""
+        return is_scalar(self._types, type_)
 
     def read(self, key: str) -> Any:
         """Return the value of data by its name in the translated program."""
@@ -405,10 +468,6 @@ class Task:
             and owned.symbol.kind == "PERS"
             and isinstance(owned.symbol.node, tree.Data)
         ]
-
-    def declared_data(self) -> list[tuple[str, DataSymbol]]:
-        """Return all data of modules, each with the name of its module."""
-        return [(one.module, one.symbol) for one in self._owned() if isinstance(one.symbol, DataSymbol)]
 
     def _owned(self) -> list[Owned]:
         scopes = [self._checker.task, *self._checker.locals.values()]

@@ -17,6 +17,7 @@ from daidalos.industry.rapid.runtime.names import (
     global_name,
     jumps,
     labels,
+    local_names,
     python_name,
     referenced_names,
 )
@@ -66,15 +67,15 @@ class Translation:
         return "\n".join(self.lines) + "\n"
 
 
-def translate(modules: Sequence[Parsed], checker: Checker) -> Translation:
-    """Return the program of modules that have no errors."""
+def translate(modules: Sequence[Parsed], checker: Checker, is_debugged: bool = False) -> Translation:
+    """Return the program of modules that have no errors; for a debugger, with all local data in boxes."""
     result = Translation()
     for parsed in modules:
         for module in parsed.tree.modules:
             scope = checker.locals[id(module)]
             report = Reporter(parsed.source)
             expressions = ExpressionChecker(checker.type_table(scope), report, set(), lambda *_: None)
-            translator = _ModuleTranslator(result, parsed, scope, expressions)
+            translator = _ModuleTranslator(result, parsed, scope, expressions, is_debugged)
             for item in module.items:
                 if isinstance(item, tree.Routine):
                     translator.translate(item)
@@ -84,7 +85,10 @@ def translate(modules: Sequence[Parsed], checker: Checker) -> Translation:
 class _ModuleTranslator:
     """Translates the routines of a module."""
 
-    def __init__(self, result: Translation, parsed: Parsed, scope: Scope, checker: ExpressionChecker) -> None:
+    def __init__(
+        self, result: Translation, parsed: Parsed, scope: Scope, checker: ExpressionChecker, is_debugged: bool
+    ) -> None:
+        self._is_debugged = is_debugged
         self._result = result
         self._source = parsed.source
         self._scope = scope
@@ -134,7 +138,8 @@ class _ModuleTranslator:
                     symbol = symbol_of_parameter(one, group.is_optional)
                     scope.names[one.name.key] = Owned(symbol, "", "", one.name)
         self._checker.scope = scope
-        self._frame = self._expressions.frame = Frame(referenced_names(node))
+        boxed = local_names(node) if self._is_debugged else referenced_names(node)
+        self._frame = self._expressions.frame = Frame(boxed)
         self._handler = ""
         self._in_handler = False
 
