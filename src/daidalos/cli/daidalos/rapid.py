@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from daidalos.cli.daidalos.rapid_target import add_target
 from daidalos.common.errors import UserError
 
 
@@ -50,6 +51,7 @@ class RapidVerb:
         )
         run.add_argument("--sim", action="store_true", help="move the arm of `bringup.launch.py` in the simulator too")
         run.add_argument("--action", metavar="NAME", help="move a real arm by this FollowJointTrajectory action")
+        add_target(run)
         run.set_defaults(_command=_run)
 
         trace = commands.add_parser("trace", help="run a program on an arm, and write a report of its motion")

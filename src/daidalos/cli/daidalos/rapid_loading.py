@@ -11,12 +11,18 @@ from typing import TYPE_CHECKING
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
+    from daidalos.industry.rapid.runtime.announced_arm import Announcement
     from daidalos.industry.rapid.runtime.board import Board
     from daidalos.industry.rapid.runtime.robot import Robot
     from daidalos.industry.rapid.runtime.task import Task
 
 
-def load_task(args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float) -> Task | None:
+def load_task(
+    args: argparse.Namespace,
+    pace: Callable[[float], None] | None,
+    sampling: float,
+    announcement: Announcement | None = None,
+) -> Task | None:
     """Return the task that the arguments describe; None, with the reasons printed, where it cannot run.
 
     Raises
@@ -26,12 +32,16 @@ def load_task(args: argparse.Namespace, pace: Callable[[float], None] | None, sa
     """
     if len(args.task) > 1:
         raise UserError("this runs one task; name one with --task")
-    tasks = load_tasks(args, pace, sampling)
+    tasks = load_tasks(args, pace, sampling, announcement)
     return next(iter(tasks.values())) if tasks else None
 
 
 def load_tasks(
-    args: argparse.Namespace, pace: Callable[[float], None] | None, sampling: float, is_debugged: bool = False
+    args: argparse.Namespace,
+    pace: Callable[[float], None] | None,
+    sampling: float,
+    announcement: Announcement | None = None,
+    is_debugged: bool = False,
 ) -> dict[str, Task] | None:
     """Return the tasks that the arguments describe; None, with the reasons printed, where one cannot run."""
     from daidalos.industry.rapid.inspection import read_signals
@@ -52,7 +62,7 @@ def load_tasks(
                 print(problem.text(report.file), file=sys.stderr)
         if blocking:
             return None
-        robot = make_robot(arm_of(args.robot, name), args.sensor, board, sampling)
+        robot = make_robot(arm_of(args.robot, name), args.sensor, board, sampling, announcement)
         try:
             task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time, is_debugged)
         except FatalError as error:
@@ -72,14 +82,21 @@ def arm_of(arms: str | Sequence[str] | None, task: str) -> str | None:
     return next(iter([*own, *common]), None)
 
 
-def make_robot(name: str | None, sensors: list[str], board: Board, sampling: float = 0.0) -> Robot | None:
-    """Return the arm of a name, or None without one.
+def make_robot(
+    name: str | None,
+    sensors: list[str],
+    board: Board,
+    sampling: float = 0.0,
+    announcement: Announcement | None = None,
+) -> Robot | None:
+    """Return the arm of a name, or None without one; it shows its targets where it is said how.
 
     Raises
     ------
     UserError
         Where no arm has this name, or a sensor is not one.
     """
+    from daidalos.industry.rapid.runtime.announced_arm import AnnouncedArm
     from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
     from daidalos.industry.rapid.runtime.sensors import parse_sensor
     from daidalos.industry.robots import arm_named
@@ -93,7 +110,9 @@ def make_robot(name: str | None, sensors: list[str], board: Board, sampling: flo
         conditions = dict(parse_sensor(text) for text in sensors)
     except ValueError as error:
         raise UserError(str(error)) from None
-    return ArmRobot(arm, sensors=conditions, set_signal=board.set, sampling=sampling)
+    if announcement is None:
+        return ArmRobot(arm, sensors=conditions, set_signal=board.set, sampling=sampling)
+    return AnnouncedArm(arm, announcement, sensors=conditions, set_signal=board.set, sampling=sampling)
 
 
 def _parse_signal(text: str) -> tuple[str, float]:

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 
 from daidalos.cli.daidalos.launching import INTERRUPTED
 from daidalos.cli.daidalos.rapid_loading import load_task, load_tasks
+from daidalos.cli.daidalos.rapid_target import announcement
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
+    from daidalos.industry.rapid.runtime.announced_arm import Announcement
     from daidalos.industry.rapid.runtime.task import Outcome, Task
 
 ENDLESS_S = 2.0
@@ -26,20 +28,21 @@ TRACE_PERIOD_S = 0.004
 
 def run_program(args: argparse.Namespace) -> int:
     """Load and run a program; return 0 at its end, 2 after an error, 130 after Ctrl-C."""
-    if args.sim or args.action:
-        return _run_on_action(args)
-    pace = None if args.fast else Pace()
-    tasks = load_tasks(args, pace, 0.0)
-    if tasks is None:
-        return 2
-    status = run_tasks(tasks, args, pace)
+    with announcement(args) as announced:
+        if args.sim or args.action:
+            return _run_on_action(args, announced)
+        pace = None if args.fast else Pace()
+        tasks = load_tasks(args, pace, 0.0, announced)
+        if tasks is None:
+            return 2
+        status = run_tasks(tasks, args, pace)
     if args.save:
         for task in tasks.values():
             _save(task)
     return status
 
 
-def _run_on_action(args: argparse.Namespace) -> int:
+def _run_on_action(args: argparse.Namespace, announced: Announcement | None) -> int:
     """Run a program whose arm is moved by a controller of joint trajectories.
 
     Raises
@@ -53,7 +56,7 @@ def _run_on_action(args: argparse.Namespace) -> int:
     if args.robot is None or args.fast:
         raise UserError("--sim and --action need an arm, such as --robot irb120, and run at its pace, without --fast")
     with Follower(args.action or ACTION, use_sim_time=args.sim) as follower:
-        task = load_task(args, follower, PERIOD_S)
+        task = load_task(args, follower, PERIOD_S, announced)
         if task is None:
             return 2
         assert isinstance(task.robot, ArmRobot)

@@ -245,7 +245,7 @@ class ArmRobot:
         for look in self._watchers:
             look()
         due = [one for one in self._events if self._due(*one) <= self.planner.now + 1e-9]
-        self._events = [one for one in self._events if one not in due]
+        self._events = [one for one in self._events if all(one is not other for other in due)]
         for _, event in due:
             event.action()
 
