@@ -27,6 +27,7 @@ ALLOWED = {
     "industry/lighting/engine.py": "the pace of DMX frames, which lamps expect in real time",
     "industry/rsi/client.py": "how long a robot is silent, and the computing time that is reported",
     "industry/rsi/controller_server.py": "the cycle of a controller, which does not wait",
+    "industry/servoing/experiments.py": "cycles in real time, where they are asked for",
     "industry/welding/rapid_paths.py": "the computing time of a program that may be endless",
     "navigation/planners/search.py": "the computing time of a search, which max_planning_time limits",
     "nodes/abb_hardware_interface/_hardware.py": "how long a controller is waited for",

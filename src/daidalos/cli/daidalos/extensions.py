@@ -20,6 +20,7 @@ _DECLARED_IN = (
     "daidalos.control.extensions",
     "daidalos.navigation.extensions",
     "daidalos.industry.assistance.extensions",
+    "daidalos.industry.servoing.extensions",
     "daidalos.studio.extensions",
     "daidalos.nodes.extensions",
 )

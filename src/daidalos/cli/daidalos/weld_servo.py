@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daidalos.cli.daidalos.weld_arguments import finite
+from daidalos.cli.daidalos.weld_servo_run import compare_runs, run_robot, run_servo
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
@@ -31,6 +32,47 @@ def add_servo(commands: Any) -> None:
     design.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="where report and figures go")
     design.add_argument("--json", action="store_true", help="print the figures as JSON")
     design.set_defaults(_command=_design)
+    run = verbs.add_parser("run", help="follow a seam, in the simulated cell or with a robot")
+    run.add_argument("--seam", default="line", metavar="SEAM", help="line, curve or long (default: line)")
+    run.add_argument(
+        "--controller", default="feedforward", metavar="NAME",
+        help="of `daidalos extensions seam_controllers`, or off (default: feedforward)",
+    )  # fmt: skip
+    run.add_argument("--speed", type=finite, default=300.0, metavar="MM/MIN", help="along the seam (default: 300)")
+    run.add_argument("--lead", type=finite, default=35.0, metavar="MM", help="of the sensor (default: 35)")
+    run.add_argument("--limit", type=finite, default=5.0, metavar="MM", help="of the correction (default: 5)")
+    run.add_argument("--rsi", type=Path, metavar="XML", help="Ethernet configuration (default: that of kr500_2mt)")
+    cell = run.add_argument_group("simulated cell")
+    cell.add_argument("--seed", type=int, default=0, help="of edges and noise (default: 0)")
+    cell.add_argument("--irregularity", type=finite, default=1.0, metavar="SHARE", help="of the edges (default: 1)")
+    cell.add_argument("--lost", type=finite, default=0.0, metavar="SHARE", help="of answers that get lost")
+    cell.add_argument("--blind", type=finite, nargs=2, metavar="MM", help="where the sensor sees nothing: FROM TO")
+    cell.add_argument("--fast", action="store_true", help="IPO_FAST: cycles of 4 ms")
+    cell.add_argument("--realtime", action="store_true", help="let cycles take their time")
+    robot = run.add_argument_group("robot")
+    robot.add_argument(
+        "--robot", metavar="ADDRESS[:PORT]",
+        help="wait for this robot's telegrams on a port (default: 59152); its profiles are simulated where it is",
+    )  # fmt: skip
+    robot.add_argument("--heading", type=finite, default=0.0, metavar="DEG", help="of the path in the robot's base")
+    robot.add_argument("--wait", type=finite, default=60.0, metavar="S", help="for the robot (default: 60)")
+    run.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="where run and report go")
+    run.add_argument("--json", action="store_true", help="print the figures as JSON")
+    run.set_defaults(_command=run_servo)
+    robot_parser = verbs.add_parser("robot", help="simulate a robot with RSI, in real time")
+    robot_parser.add_argument("--to", default="127.0.0.1:59152", metavar="ADDRESS[:PORT]", help="where telegrams go")
+    robot_parser.add_argument("--rsi", type=Path, metavar="XML", help="Ethernet configuration")
+    robot_parser.add_argument("--speed", type=finite, default=300.0, metavar="MM/MIN", help="(default: 300)")
+    robot_parser.add_argument("--length", type=finite, default=100.0, metavar="MM", help="of the seam (default: 100)")
+    robot_parser.add_argument("--max-lost", type=int, default=10, metavar="N", help="answers in a row (default: 10)")
+    robot_parser.add_argument("--fast", action="store_true", help="IPO_FAST: cycles of 4 ms")
+    robot_parser.add_argument("--json", action="store_true", help="print what happened as JSON")
+    robot_parser.set_defaults(_command=run_robot)
+    compare = verbs.add_parser("compare", help="compare saved runs, and write a report")
+    compare.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="run.npz of `daidalos weld servo run -o`")
+    compare.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="where the report goes")
+    compare.add_argument("--json", action="store_true", help="print the figures as JSON")
+    compare.set_defaults(_command=compare_runs)
 
 
 def _design(args: argparse.Namespace) -> int:

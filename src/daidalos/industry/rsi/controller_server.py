@@ -73,6 +73,13 @@ class ControllerServer:
             self.last_refusal = reason
         self.controller.step()
 
+    def lose(self, wait: float) -> None:
+        """Throw the answer of the present cycle away, and end the cycle."""
+        self._socket.settimeout(wait)
+        with suppress(BlockingIOError, TimeoutError, ConnectionRefusedError):
+            self._socket.recv(MAX_BYTES + 1)
+        self.controller.step()
+
     def run(self, duration: float, each_cycle: Callable[[], None] | None = None) -> None:
         """Execute cycles in real time until a duration [s] is over or the robot stops."""
         begin = time.monotonic()
