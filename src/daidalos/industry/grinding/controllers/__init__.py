@@ -1,0 +1,1 @@
+"""Force controllers, one a file."""
