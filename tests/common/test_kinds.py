@@ -10,7 +10,7 @@ import pytest
 
 from daidalos.common.extensions import classes_in, describe, listing, load
 
-LAYERS = ("simulation", "control", "navigation", "industry.assistance", "nodes")
+LAYERS = ("simulation", "control", "navigation", "industry.assistance", "industry.grinding", "nodes")
 KINDS = {kind.name: kind for layer in LAYERS for kind in import_module(f"daidalos.{layer}.extensions").KINDS}
 
 

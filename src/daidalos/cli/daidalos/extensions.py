@@ -21,6 +21,7 @@ _DECLARED_IN = (
     "daidalos.navigation.extensions",
     "daidalos.industry.assistance.extensions",
     "daidalos.industry.servoing.extensions",
+    "daidalos.industry.grinding.extensions",
     "daidalos.studio.extensions",
     "daidalos.nodes.extensions",
 )

@@ -21,6 +21,7 @@ _DESCRIPTIONS = {
     "demo": "A robot that maps an arena and drives where it is sent",
     "diff": "Compare two bags, message by message",
     "extensions": "List what can be extended, and the extensions that are there",
+    "grind": "Control the force of a grinder, finish plates and remove excess material",
     "light": "Point a moving head at places of a work cell",
     "map": "Build a map from the log of a robot",
     "rapid": "Check, format, run, trace and write programs of ABB robots",

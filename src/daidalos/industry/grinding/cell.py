@@ -240,9 +240,7 @@ class Cell:
         if self._broken(FaultKind.SENSOR_NAN):
             force = math.nan
         position = self.piston + sensor.position_noise * self._rng.normal()
-        self._last = Measurement(
-            self.time, force, position, float(self._state[dynamics_kernels.SPEED]), weight
-        )
+        self._last = Measurement(self.time, force, position, float(self._state[dynamics_kernels.SPEED]), weight)
         return self._last
 
     _valve_command = 0.0

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
 
-BINS = 64
+BINS = 128
 """Number of depths in the table."""
 BESIDE = -1e30
 """Height of the first touch where the disc is beside the field [m]."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import bisect
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 from daidalos.industry.grinding.cell import Cell, Tool
 from daidalos.industry.grinding.force_control import Command, ForceController, Measurement, ValveMode
 from daidalos.industry.grinding.passes import Line
 from daidalos.industry.grinding.settings import PERIOD
-from daidalos.industry.grinding.supervision import CONTACT_FORCE, Situation, Supervisor
+from daidalos.industry.grinding.supervision import Situation, Supervisor
 
 LIFT_SPEED = 0.15
 """Speed at which the arm lifts the tool off [m/s]."""
@@ -208,9 +208,7 @@ class Grinding:
         change = min(max(force - self._wanted, -step), step)
         self._wanted += change
         self._steady = self._steady + PERIOD if abs(change) < 1e-3 * step else 0.0
-        now = Situation(
-            self.cell.time, self._wanted, self._steady > STEADY_TIME, self.cell.torque, self.cell.wear
-        )
+        now = Situation(self.cell.time, self._wanted, self._steady > STEADY_TIME, self.cell.torque, self.cell.wear)
         problem = (
             self._supervisor.problem(measured, now)
             if self._is_supervised

@@ -46,12 +46,14 @@ class Workpiece:
     @property
     def x(self) -> NDArray[np.float64]:
         """Return x of the columns [m]."""
-        return self.origin[0] + self.resolution * np.arange(self.surface.shape[1])
+        places: NDArray[np.float64] = self.origin[0] + self.resolution * np.arange(self.surface.shape[1])
+        return places
 
     @property
     def y(self) -> NDArray[np.float64]:
         """Return y of the rows [m]."""
-        return self.origin[1] + self.resolution * np.arange(self.surface.shape[0])
+        places: NDArray[np.float64] = self.origin[1] + self.resolution * np.arange(self.surface.shape[0])
+        return places
 
     @property
     def excess(self) -> NDArray[np.float64]:
@@ -125,7 +127,7 @@ def deviation(workpiece: Workpiece, tolerance: float) -> Deviation:
 
 
 def scanned(workpiece: Workpiece, noise: float, rng: np.random.Generator) -> Workpiece:
-    """Return a workpiece as a scanner sees it: with noise of a standard deviation [m], and a median over 3 x 3 cells."""
+    """Return a workpiece as a scanner sees it: with noise of a deviation [m], and the median of 3 x 3 cells."""
     from scipy.ndimage import median_filter
 
     seen = workpiece.surface + rng.normal(0.0, noise, workpiece.surface.shape) if noise else workpiece.surface
@@ -177,9 +179,7 @@ def _checked(content: dict[str, NDArray[Any]], path: Path) -> Workpiece:
     pose = content.get("pose", np.eye(4))
     if pose.shape != (4, 4):
         raise UserError(f"{path}: 'pose' has the shape {pose.shape}, but (4, 4) is expected")
-    numbers = {"surface": surface, "pose": pose} | {
-        name: content[name] for name in ("target", "origin", "resolution")
-    }
+    numbers = {"surface": surface, "pose": pose} | {name: content[name] for name in ("target", "origin", "resolution")}
     for name, values in numbers.items():
         if values.dtype.kind not in "fiu" or not np.isfinite(values).all():
             raise UserError(f"{path}: '{name}' has values that are not finite numbers")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 
@@ -17,8 +18,10 @@ from daidalos.industry.welding.seam import path_lengths
 
 STEP = 2e-3
 """Distance of the points of a line [m]."""
-RUN_IN = 0.012
-"""Length of a line before and behind the region of an even layer [m]."""
+RUN_IN, RUN_IN_TIME = 0.012, 0.35
+"""Least length [m] and time [s] of a line before and behind the region of an even layer: there the force rises."""
+EDGE = 2e-3
+"""Least distance of a line from the edge of the workpiece [m]."""
 MIN_FEED, MAX_FEED = 0.004, 0.12
 """[m/s]"""
 
@@ -122,7 +125,6 @@ def even_passes(
     print_ = footprint(parameters, piece.resolution, force, preston)
     rows, columns = (np.flatnonzero(piece.region.any(axis=axis)) for axis in (1, 0))
     low, high = piece.y[rows[0]], piece.y[rows[-1]]
-    left, right = piece.x[columns[0]] - RUN_IN, piece.x[columns[-1]] + RUN_IN
     edge = 0.5 * print_.width(piece.resolution)
     count = max(round((high - low + 2.0 * edge) / spacing), 1) + 1
     places = np.linspace(low - edge, high + edge, count)
@@ -135,6 +137,9 @@ def even_passes(
             f"a layer of {1e6 * depth:.1f} um needs a feed of {1e3 * feed:.0f} mm/s, but at most {1e3 * MAX_FEED:.0f} "
             f"are possible; choose a smaller force or a greater spacing"
         )
+    before = max(RUN_IN, RUN_IN_TIME * feed)
+    left = max(piece.x[columns[0]] - before, piece.x[0] + EDGE)
+    right = min(piece.x[columns[-1]] + before, piece.x[-1] - EDGE)
     along = np.linspace(left, right, max(round((right - left) / STEP), 1) + 1)
     lines = []
     for number in range(layers * count):
@@ -185,12 +190,12 @@ def excess_passes(
     strip = print_.width(scan.resolution)
     for number in range(1, count + 1):
         rows, columns = np.nonzero(marks == number)
-        if len(rows) * scan.resolution**2 < 4e-6 or smooth[rows, columns].max() < 0.8 * tolerance:
+        if len(rows) * scan.resolution**2 < 4e-6 or smooth[rows, columns].max() < 0.9 * tolerance:
             continue
         first, last = int(columns.min()), int(columns.max()) + 1
         parts = max(math.ceil((last - first) * scan.resolution / strip), 1)
         bounds = np.linspace(first, last, parts + 1).round().astype(int)
-        for low, high in zip(bounds[:-1], bounds[1:], strict=True):
+        for low, high in itertools.pairwise(bounds):
             taken = np.where((marks == number)[:, low:high], np.clip(smooth[:, low:high], 0.0, None), 0.0)
             lines += _strip(scan, taken, low, force, print_.volume_rate, share, max_depth)
     return lines

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import itertools
+import math
 import zipfile
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -42,7 +44,8 @@ class Record:
     @property
     def is_grinding(self) -> NDArray[np.bool_]:
         """Return at which times the force was controlled (n,)."""
-        return self.phase == _PHASES.index(Phase.GRIND)
+        grinding: NDArray[np.bool_] = self.phase == _PHASES.index(Phase.GRIND)
+        return grinding
 
     @property
     def smooth_force(self) -> NDArray[np.float64]:
@@ -83,32 +86,29 @@ class ForceFigures:
     greatest: float
     least: float
 
-    def as_json(self) -> dict[str, float]:
-        """Return the figures in newtons and percent."""
-        return {
-            "steady_error_n": round(self.steady_error, 3),
-            "moving_rms_n": round(self.moving_rms, 3),
-            "overshoot_percent": round(100.0 * self.overshoot, 2),
-            "vibration_rms_n": round(self.vibration, 3),
-            "greatest_n": round(self.greatest, 2),
-            "least_n": round(self.least, 2),
+    @property
+    def is_within_goals(self) -> bool:
+        """Return whether steady error, moving rms and overshoot are within 1 N, 3 N and 10 %."""
+        return self.steady_error <= 1.0 and self.moving_rms <= 3.0 and self.overshoot <= 0.1
+
+    def as_json(self) -> dict[str, float | None]:
+        """Return the figures in newtons and percent; None where no wanted force lasted long enough."""
+        values = {
+            "steady_error_n": self.steady_error,
+            "moving_rms_n": self.moving_rms,
+            "overshoot_percent": 100.0 * self.overshoot,
+            "vibration_rms_n": self.vibration,
+            "greatest_n": self.greatest,
+            "least_n": self.least,
         }
+        return {name: round(value, 3) if math.isfinite(value) else None for name, value in values.items()}
 
 
-def recorded(run: Grinding, watch: Callable[[Sample], None] | None = None) -> Record:
-    """Step a run to its end, and return what was measured.
-
-    Parameters
-    ----------
-    run : Grinding
-    watch : callable or None
-        Called with each sample.
-    """
+def recorded(run: Grinding) -> Record:
+    """Step a run to its end, and return what was measured."""
     samples = []
     while not run.is_over:
         samples.append(run.step())
-        if watch is not None:
-            watch(samples[-1])
     return record_of(samples)
 
 
@@ -161,7 +161,7 @@ def _levels(wanted: NDArray[np.float64]) -> list[tuple[int, int, float]]:
     changes = np.flatnonzero(np.abs(np.diff(wanted)) > 1e-9) + 1
     bounds = [0, *changes.tolist(), len(wanted)]
     found: list[tuple[int, int, float]] = []
-    for first, last in zip(bounds[:-1], bounds[1:], strict=True):
+    for first, last in itertools.pairwise(bounds):
         if last - first > 1200 * STEADY_TIME:
             is_step = bool(found) and found[-1][1] == first
             found.append((first, last, float(wanted[first] - wanted[first - 1]) if is_step else 0.0))

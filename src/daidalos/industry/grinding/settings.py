@@ -21,9 +21,7 @@ class ActuatorParameters(Parameters):
     area: float = parameter(1.0e-3, "Area of the piston.", unit="m^2", above=0.0)
     stroke: float = parameter(0.05, "Stroke of the piston.", unit="m", above=0.0)
     mass: float = parameter(4.0, "Mass that the piston carries: grinder, disc and rod.", unit="kg", above=0.0)
-    max_pressure: float = parameter(
-        6e5, "Greatest difference of the pressures in both chambers.", unit="Pa", above=0.0
-    )
+    max_pressure: float = parameter(6e5, "Greatest difference of the pressures in both chambers.", unit="Pa", above=0.0)
     valve_time: float = parameter(0.03, "Time constant of the valve, first order.", unit="s", above=0.0)
     valve_delay: float = parameter(0.01, "Dead time of the valve.", unit="s", minimum=0.0, maximum=0.5)
     coulomb_friction: float = parameter(3.0, "Friction of the seals while they slide.", unit="N", minimum=0.0)

@@ -12,23 +12,24 @@ from numpy.typing import NDArray
 from daidalos.common.errors import UserError
 from daidalos.common.extensions import find
 from daidalos.common.parameters import Parameters, parameters_from
-from daidalos.industry.extensions import FORCE_CONTROLLERS
 from daidalos.industry.grinding.cell import Cell, Fault
+from daidalos.industry.grinding.extensions import FORCE_CONTROLLERS
 from daidalos.industry.grinding.force_control import ForceController
-from daidalos.industry.grinding.grinding import RAMP_RATE, Grinding, Sample
+from daidalos.industry.grinding.grinding import RAMP_RATE, Grinding
 from daidalos.industry.grinding.height_field import Deviation, Workpiece, deviation, scanned
 from daidalos.industry.grinding.passes import STEP, Line, even_passes, excess_passes, footprint, tools_along
+from daidalos.industry.grinding.reach import check_reach
 from daidalos.industry.grinding.records import Record, force_figures, recorded
 from daidalos.industry.grinding.settings import PERIOD, CellParameters
 from daidalos.industry.grinding.workpieces import plate
 
 MAX_PASSES = 15
+WITHIN = 0.99
+"""Share of the cells that has to be within the tolerance at the end."""
 STEPS = (10.0, 30.0, 50.0, 30.0)
 """Wanted forces of the force test [N]."""
 STEP_TIME = 2.5
 TEST_FEED = 0.02
-
-Watch = Callable[[Grinding, Sample], None]
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,6 @@ def force_test(
     faults: Sequence[Fault] = (),
     is_supervised: bool = True,
     resolution: float = 0.25e-3,
-    watch: Watch | None = None,
 ) -> tuple[Record, Grinding]:
     """Grind along a plate with steps of the wanted force, and return the record and the run."""
     piece = plate(0.3, depth=0.0, roughness=1e-6, seed=seed, resolution=resolution)
@@ -130,7 +130,7 @@ def force_test(
         cell, controller, [line], [tools_along(line, piece, piece.surface, parameters, offset)],
         ramp=math.inf, is_supervised=is_supervised,
     )  # fmt: skip
-    return recorded(run, None if watch is None else lambda sample: watch(run, sample)), run
+    return recorded(run), run
 
 
 def _stepped_line() -> Line:
@@ -141,25 +141,6 @@ def _stepped_line() -> Line:
     level = np.clip(np.searchsorted(ends[1:], along, side="left"), 0, len(STEPS) - 1)
     points = np.stack([along - 0.5 * ends[-1], np.zeros_like(along)], axis=1)
     return Line(points, np.full_like(along, TEST_FEED), np.array(STEPS)[level])
-
-
-def grind_lines(
-    piece: Workpiece,
-    scan: Workpiece,
-    lines: Sequence[Line],
-    parameters: CellParameters,
-    controller: ForceController,
-    seed: int,
-    wear: float,
-    faults: Sequence[Fault] = (),
-) -> Grinding:
-    """Return a run over lines on a workpiece, whose arm follows the surface of a scan."""
-    force = float(lines[0].forces.max()) if lines else STEPS[1]
-    offset = footprint(parameters, piece.resolution, force, parameters.disc.preston).offset
-    cell = Cell(parameters, piece, offset, controller.mode, seed, wear)
-    cell.faults = tuple(faults)
-    tools = [tools_along(line, scan, scan.surface, parameters, offset) for line in lines]
-    return Grinding(cell, controller, lines, tools, RAMP_RATE)
 
 
 class JobRun:
@@ -205,21 +186,33 @@ class JobRun:
         self.scan = self.first_scan = scanned(piece, parameters.sensor.scan_noise, self._rng)
         self.time = 0.0
 
-    def next_pass(self) -> tuple[list[Line], Grinding] | None:
-        """Return lines and run of the next pass; None where the job has ended."""
+    def next_pass(self, robot: str) -> tuple[list[Line], Grinding] | None:
+        """Return lines and run of the next pass; None where the job has ended.
+
+        Raises
+        ------
+        UserError
+            Where the robot cannot follow them.
+        """
         if self.problem:
             return None
         lines = self._plan(self.scan, self._preston)
         if not lines:
+            within = deviation(self.scan, self.tolerance).within
+            if within < WITHIN:
+                self.problem = f"only {100.0 * within:.1f} % of the region are within {1e6 * self.tolerance:.0f} um"
             return None
         if len(self.passes) == self._max_passes:
             self.problem = f"not within {1e6 * self.tolerance:.0f} um after {self._max_passes} passes"
             return None
-        run = grind_lines(
-            self.piece, self.scan, lines, self.parameters, self._make(), self._seed + len(self.passes), self._wear,
-            [Fault(one.kind, one.time - self.time) for one in self._faults],
-        )  # fmt: skip
-        return lines, run
+        force = float(lines[0].forces.max())
+        offset = footprint(self.parameters, self.piece.resolution, force, self.parameters.disc.preston).offset
+        tools = [tools_along(line, self.scan, self.scan.surface, self.parameters, offset) for line in lines]
+        check_reach(robot, tools, self.piece)
+        controller = self._make()
+        cell = Cell(self.parameters, self.piece, offset, controller.mode, self._seed + len(self.passes), self._wear)
+        cell.faults = tuple(Fault(one.kind, one.time - self.time) for one in self._faults)
+        return lines, Grinding(cell, controller, lines, tools, RAMP_RATE)
 
     def finish_pass(self, lines: list[Line], run: Grinding, record: Record) -> Pass:
         """Scan what a run has left, learn how fast the disc grinds, and return the pass."""
@@ -243,16 +236,13 @@ class JobRun:
 
     def result(self) -> Job:
         """Return the job as it is now."""
-        return Job(
-            self.title, self.first_scan, self.scan, tuple(self.passes), self.tolerance, self._wear, self.problem
-        )
+        return Job(self.title, self.first_scan, self.scan, tuple(self.passes), self.tolerance, self._wear, self.problem)
 
-    def run(self, watch: Watch | None = None, on_pass: Callable[[Pass], None] | None = None) -> Job:
-        """Do the whole job."""
-        while (following := self.next_pass()) is not None:
+    def run(self, robot: str, on_pass: Callable[[Pass], None] | None = None) -> Job:
+        """Do the whole job with an arm of a name."""
+        while (following := self.next_pass(robot)) is not None:
             lines, run = following
-            record = recorded(run, None if watch is None else lambda sample, run=run: watch(run, sample))
-            done = self.finish_pass(lines, run, record)
+            done = self.finish_pass(lines, run, recorded(run))
             if on_pass is not None:
                 on_pass(done)
         return self.result()

@@ -33,11 +33,16 @@ def plate(
         Edge of a cell [m].
     """
     count = round(size / resolution)
-    axis = (np.arange(count) - 0.5 * (count - 1)) * resolution
+    axis = resolution * np.arange(count) - 0.5 * resolution * (count - 1)
     surface = np.random.default_rng(seed).normal(0.0, roughness, (count, count))
     inside = np.abs(axis) <= 0.5 * size - MARGIN
     return Workpiece(
-        surface, np.full((count, count), -depth), inside[:, None] & inside[None, :], axis[[0, 0]], resolution, _pose()
+        surface,
+        np.full((count, count), -depth),
+        inside[:, None] & inside[None, :],
+        np.array([axis[0]] * 2),
+        resolution,
+        place(),
     )
 
 
@@ -63,7 +68,7 @@ def clamp(excess: float = 1.0e-3, seed: int = 0, resolution: float = RESOLUTION)
         along = height * (1.0 + 0.2 * _waves(y, rng))[:, None] * ends
         surface += along * np.maximum(1.0 - ((x - center) / width) ** 2, 0.0)[None, :]
     region = (np.abs(x) <= 0.06)[None, :] & (np.abs(y) <= 0.095)[:, None]
-    return Workpiece(surface, target, region, np.array([x[0], y[0]]), resolution, _pose())
+    return Workpiece(surface, target, region, np.array([x[0], y[0]]), resolution, place())
 
 
 def _waves(along: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
@@ -73,7 +78,8 @@ def _waves(along: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.f
     return waves
 
 
-def _pose() -> NDArray[np.float64]:
+def place() -> NDArray[np.float64]:
+    """Return the pose (4, 4) of a workpiece in the base where none is given."""
     pose = np.eye(4)
     pose[:3, 3] = PLACE
     return pose

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -41,7 +42,7 @@ def write_plan(plan: Plan, folder: Path, name: str, tool_mass: float) -> list[Pa
         Where one of the files is there already.
     """
     identifier = "weld_" + re.sub(r"\W", "_", name, flags=re.ASCII)[:16]
-    texts = {
+    texts: dict[str, str | bytes] = {
         f"{identifier}.csv": _points(plan),
         f"{identifier}.src": _krl(plan, identifier),
         f"{identifier}.mod": _rapid(plan, identifier, tool_mass),
@@ -51,25 +52,25 @@ def write_plan(plan: Plan, folder: Path, name: str, tool_mass: float) -> list[Pa
     return write_new(folder, texts)
 
 
-def write_new(folder: Path, texts: dict[str, str]) -> list[Path]:
-    """Write texts to new files in a folder, all or none, and return their paths.
+def write_new(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
+    """Write texts and bytes to new files in a folder, all or none, and return their paths.
 
     Raises
     ------
     UserError
         Where one of them is there already, or the folder cannot be written to.
     """
-    for name in texts:
+    for name in contents:
         if (folder / name).exists():
             raise UserError(f"{folder / name}: is there already; choose another folder or remove it")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, text in texts.items():
-            with open(folder / name, "x", encoding="utf-8") as file:
-                file.write(text)
+        for name, content in contents.items():
+            with open(folder / name, "xb") as file:
+                file.write(content if isinstance(content, bytes) else content.encode())
     except OSError as error:
         raise UserError(f"{folder}: {error.strerror or error}") from None
-    return [folder / name for name in texts]
+    return [folder / name for name in contents]
 
 
 def _points(plan: Plan) -> str:

@@ -32,7 +32,7 @@ class Admittance(ForceController):
         self._speed = 0.0
 
     def begin(self, measured: Measurement, command: Command) -> None:
-        """Begin at rest, with pressure and offset as they are."""
+        """Start at rest, with pressure and offset as they are."""
         self._command, self._speed = command, 0.0
 
     def step(self, wanted: float, measured: Measurement) -> Command:

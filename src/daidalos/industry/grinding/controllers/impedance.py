@@ -19,7 +19,7 @@ class ImpedanceParameters(Parameters):
         8.0, "Rate at which the spring's place follows the error of the force.", unit="1/s", minimum=0.0
     )
     response: float = parameter(
-        0.06, "Time constant with which the force is expected to follow the wanted one.", unit="s", above=0.0
+        0.09, "Time constant with which the force is expected to follow the wanted one.", unit="s", above=0.0
     )
 
 

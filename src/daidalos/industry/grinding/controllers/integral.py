@@ -13,7 +13,7 @@ from daidalos.industry.grinding.settings import ActuatorParameters
 class IntegralParameters(Parameters):
     """Parameters of ``integral``."""
 
-    integral: float = parameter(4.8, "Force per error of the force and time.", unit="1/s", above=0.0)
+    integral: float = parameter(4.5, "Force per error of the force and time.", unit="1/s", above=0.0)
 
 
 class Integral(ForceController):
@@ -28,7 +28,7 @@ class Integral(ForceController):
         self._sum = 0.0
 
     def begin(self, measured: Measurement, command: Command) -> None:
-        """Begin with the pressure as it is."""
+        """Start from the pressure as it is."""
         self._sum = command.pressure * self.actuator.area - measured.weight
 
     def step(self, wanted: float, measured: Measurement) -> Command:

@@ -15,7 +15,9 @@ class PiFeedforwardParameters(Parameters):
 
     proportional: float = parameter(0.3, "Force per error of the force.", minimum=0.0)
     integral: float = parameter(6.0, "Force per error of the force and time.", unit="1/s", above=0.0)
-    feedforward: float = parameter(0.5, "Share of the wanted force that is commanded at once.", minimum=0.0, maximum=1.5)
+    feedforward: float = parameter(
+        0.5, "Share of the wanted force that is commanded at once.", minimum=0.0, maximum=1.5
+    )
 
 
 class PiFeedforward(ForceController):

@@ -1,4 +1,4 @@
-"""Registry of what users add to the industrial workshops: force controllers."""
+"""Registry of what users add to grinding: force controllers."""
 
 from __future__ import annotations
 
