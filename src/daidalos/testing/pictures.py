@@ -66,7 +66,7 @@ def _world(simulation: Simulation, scenario: Scenario) -> Any:
 
     image = Image.new("RGB", (_SIZE, _SIZE), (235, 238, 240))
     draw = ImageDraw.Draw(image)
-    for owner, shape in _outlines(simulation):
+    for owner, shape in outlines(simulation):
         fill = (150, 155, 165) if owner not in {s.name.split("'")[1] for s, _ in ways} else (255, 190, 120)
         points = [at(x, y) for x, y in shape]
         if len(points) > 2:
@@ -85,7 +85,7 @@ def _world(simulation: Simulation, scenario: Scenario) -> Any:
     return image
 
 
-def _outlines(simulation: Simulation) -> list[tuple[str, list[tuple[float, float]]]]:
+def outlines(simulation: Simulation) -> list[tuple[str, list[tuple[float, float]]]]:
     """Return the outlines of all collisions from above, those of higher ones last."""
     import numpy as np
     from shapely import MultiPoint, Polygon

@@ -99,6 +99,14 @@ class Performance:
     def _walk(self, name: str, path: list[list[float]], speed: float = 1.0, loop: bool = True) -> None:
         self._world.walk(name, [(float(x), float(y)) for x, y in path], speed=speed, loop=loop)
 
+    def _crowd(
+        self, count: int, speed: list[float] | None = None, avoid: list[str] | None = None, name: str = "person"
+    ) -> None:
+        if speed is not None and len(speed) != 2:
+            raise UserError(f"'speed' should have 2 numbers, got {len(speed)}")
+        slow, fast = (0.6, 1.4) if speed is None else (float(one) for one in speed)
+        self._world.crowd(count, speed=(slow, fast), avoid=avoid or (), name=name)
+
     # What happens.
 
     def _wait(self, seconds: float) -> None:

@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 from daidalos.common.errors import UserError
 from daidalos.common.pose3 import Pose
 from daidalos.common.suggestions import hint
@@ -20,6 +22,7 @@ from daidalos.testing.signals import FIRST_S, Requirement, Signal
 
 if TYPE_CHECKING:
     from daidalos.simulation import Simulation
+    from daidalos.testing.crowds import Crowd
 
 T = TypeVar("T")
 
@@ -345,6 +348,51 @@ class World:
 
         self.change(work)
         return self._robot(name, "")
+
+    def crowd(
+        self, count: int, *, speed: tuple[float, float] = (0.6, 1.4), avoid: Sequence[str] = (), name: str = "person"
+    ) -> Crowd:
+        """Add people who walk about from now on, and avoid each other, obstacles and robots; see `Crowd`.
+
+        Parameters
+        ----------
+        count : int
+        speed : tuple of two floats
+            Slowest and fastest of them [m/s].
+        avoid : sequence of str
+            Robots that they keep away from, and never walk into.
+        name : str
+            Of their models, with a number after it.
+
+        Raises
+        ------
+        UserError
+            When there are none, the speeds are not two rising positive numbers, or there is no room.
+        """
+        from daidalos.description.geometry import Cylinder
+        from daidalos.testing.crowds import PERSON_RADIUS, STEP_S, Crowd, ground_of
+
+        if count < 1 or not 0.0 < speed[0] <= speed[1]:
+            raise UserError(f"a crowd has people, and rising positive speeds, got {count}, {speed[0]:g}, {speed[1]:g}")
+        names = [f"{name}_{number}" for number in range(count)]
+        robots = [self[one].name for one in avoid]
+        ground = self.read(lambda simulation: ground_of(simulation, [*robots, *_GROUND]))
+        if ground.places().shape[0] < 40 * count:
+            raise UserError(f"there is no room for {count} people in this world")
+        clear = np.array([(one.x, one.y) for one in (self[robot].position for robot in robots)], dtype=float)
+        crowd = Crowd(names, ground, robots, speed, self.scenario.seed, clear)
+        for one, (x, y) in zip(names, crowd.positions.tolist(), strict=True):
+            model = _simple_model(one, Cylinder(PERSON_RADIUS, _HEIGHT), _HEIGHT, is_scripted=True)
+            self.host.insert(model, one, Pose.from_xyz_rpy((x, y, 0.0), (0.0, 0.0, 0.0)))
+        scheduler = self.scenario.run.scheduler
+
+        def go() -> None:
+            while True:
+                scheduler.sleep_until(scheduler.now_ns + round(1e9 * STEP_S))
+                self.change(crowd.step)
+
+        scheduler.spawn(go, self.scenario.program, f"{name}s")
+        return crowd
 
     def _obstacle(self, name: str, shape: Any, height: float, x: float, y: float, yaw: float) -> Robot:
         model = _simple_model(name, shape, height, is_scripted=False)
