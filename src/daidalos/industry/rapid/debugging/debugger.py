@@ -92,7 +92,7 @@ class Debugger:
         self._asks_pause = True
 
     def resume(self, command: Command) -> None:
-        """Have a stopped task go on: to the next breakpoint, line, line of the same routine, or out of it, or end."""
+        """Continue a stopped task: to the next breakpoint, line, line of the same routine, or out of it, or end."""
         if self.is_stopped:
             self.is_stopped = False
             self._commands.put(command)

@@ -293,7 +293,7 @@ class ArmRobot:
         self._events = events
 
     def watch(self, look: Callable[[], None]) -> None:
-        """Have a function called every `WATCH_PERIOD` while the arm moves."""
+        """Call a function every `WATCH_PERIOD` while the arm moves."""
         self._watchers.append(look)
 
     # Positions

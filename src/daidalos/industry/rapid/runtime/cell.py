@@ -137,7 +137,7 @@ class Cell:
     # Called by tasks
 
     def sleep(self, task: Task, time: float) -> float:
-        """Let the other tasks run until a time, or until the task is woken; return the time then.
+        """Wait, while the other tasks run, until a time, or until the task is woken; return the time then.
 
         Raises
         ------
@@ -157,13 +157,13 @@ class Cell:
         return self.time
 
     def wake(self, task: Task) -> None:
-        """Let a task that sleeps go on at the present time."""
+        """Wake a task that sleeps at the present time."""
         if task.name in self._wake:
             self._wake[task.name] = min(self._wake[task.name], self.time)
             self._looked.pop(task.name, None)
 
     def is_active(self, task: Task) -> None:
-        """Note that a task has done something which others may wait for."""
+        """Record that a task has done something which others may wait for."""
         self._version += 1
 
     def can_change(self, task: Task) -> bool:
@@ -180,7 +180,7 @@ class Cell:
         )
 
     def _on_signal(self, _key: str, _value: float) -> None:
-        """Let the tasks that poll a condition look again."""
+        """Wake the tasks that poll a condition."""
         for name in self._looked:
             if name != self._running and name in self._wake:
                 self._wake[name] = min(self._wake[name], self.time)

@@ -205,7 +205,7 @@ class Robot(Protocol):
         ...
 
     def watch(self, look: Callable[[], None]) -> None:
-        """Have a function called again and again while the robot moves."""
+        """Call a function again and again while the robot moves."""
         ...
 
 
@@ -339,7 +339,7 @@ class SimpleRobot:
         self._left, self._events = self._kept.pop()
 
     def watch(self, look: Callable[[], None]) -> None:
-        """Have a function called when time has passed."""
+        """Call a function whenever time has passed."""
         self._watchers.append(look)
 
     def _turn(self, move: Move) -> tuple[float, float]:
