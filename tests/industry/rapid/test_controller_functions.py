@@ -3,12 +3,15 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+from daidalos.industry.rapid.runtime.movements import set_manual
 from daidalos.industry.robots import arm_named
 
-from .running import board, run, written
+from .programs import module
+from .running import board, load, run, written
 
 AT = "[[{},{},{}],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
 WELD = """PERS seamdata seam := [0.5,0.5,[0],0]; PERS welddata weld := [10,0,[5,0,0]];"""
@@ -169,3 +172,16 @@ def test_signals_know_their_origin() -> None:
     outcome, found = run(lines, "VAR signaldo doOwn;", board=board(doReal=1.0))
     assert outcome.reason == "end", outcome.message
     assert found[0] == "2"
+
+
+@pytest.mark.parametrize("instruction", ["MoveL {}, v1000, fine, tool0;", "MoveL {}, v100\\T:=0.2, fine, tool0;"])
+def test_the_tool_is_no_faster_than_250_mm_per_s_in_manual_mode(instruction: str) -> None:
+    lines = f"""ConfL \\Off; ConfJ \\Off; MoveJ {AT.format(350, -100, 300)}, v1000, fine, tool0;
+    {instruction.format(AT.format(350, 100, 300))}"""
+    robot = ArmRobot(arm_named("irb120"), sampling=0.002)
+    task = load(module(lines), robot=robot)
+    set_manual(task)
+    assert task.run().reason == "end"
+    positions = np.concatenate([one.positions for one in robot.samples])
+    speeds = np.linalg.norm(np.diff(positions, axis=0), axis=1) / 0.002
+    assert 0.24 < speeds.max() < 0.2501

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from daidalos.cli.daidalos.rapid_calibrate import add_calibrate
 from daidalos.cli.daidalos.rapid_target import add_target
 from daidalos.common.errors import UserError
 
@@ -19,7 +20,9 @@ class RapidVerb:
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
         """Declare the arguments of `daidalos rapid`."""
         commands = parser.add_subparsers(
-            title="commands", required=True, metavar="check | format | run | trace | write | draw | server | debug"
+            title="commands",
+            required=True,
+            metavar="check | format | run | trace | write | draw | calibrate | server | debug",
         )
         check = commands.add_parser("check", help="find errors; exit status 0 without errors, else 2")
         check.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
@@ -87,6 +90,8 @@ class RapidVerb:
         _add_text(draw)
         draw.set_defaults(_command=_draw)
 
+        add_calibrate(commands)
+
         server = commands.add_parser("server", help="language server for editors, on standard input and output")
         server.set_defaults(_command=_serve)
 
@@ -126,6 +131,7 @@ def _add_program(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=CONDITION",
         help="input that is 1 where the tool's position in the base is so, such as diTouch=z<120 [mm]",
     )
+    parser.add_argument("--manual", action="store_true", help="manual mode: the tool is no faster than 250 mm/s")
     parser.add_argument("--max-time", type=float, metavar="S", help="end after so many seconds of robot time")
 
 

@@ -34,7 +34,19 @@ def _load(arguments: dict[str, Any]) -> dict[str, Task]:
     """
     if not isinstance(arguments.get("program"), str):
         raise UserError("launch needs 'program': the path of a module, a program file or a folder")
-    known = {"program", "task", "robot", "signals", "io", "home", "procedure", "stopOnEntry", "fast", "maxTime"}
+    known = {
+        "program",
+        "task",
+        "robot",
+        "signals",
+        "io",
+        "home",
+        "procedure",
+        "stopOnEntry",
+        "fast",
+        "maxTime",
+        "manual",
+    }
     ignored = {"name", "type", "request", "noDebug"}
     unknown = [one for one in arguments if one not in known | ignored and not one.startswith("__")]
     if unknown:
@@ -48,6 +60,7 @@ def _load(arguments: dict[str, Any]) -> dict[str, Task]:
         io=[Path(one) for one in _texts(arguments.get("io"))],
         home=Path(arguments["home"]) if arguments.get("home") else None,
         sensor=[],
+        manual=bool(arguments.get("manual")),
         max_time=arguments.get("maxTime"),
     )
     tasks = load_tasks(args, None if arguments.get("fast") else Pace(), 0.0, is_debugged=True)

@@ -48,6 +48,7 @@ def load_tasks(
     from daidalos.industry.rapid.runtime.board import Board
     from daidalos.industry.rapid.runtime.errors import FatalError
     from daidalos.industry.rapid.runtime.loading import choose_programs, load_modules
+    from daidalos.industry.rapid.runtime.movements import set_manual
     from daidalos.industry.rapid.runtime.task import Task
 
     signals = [name for file in args.io for name in read_signals(file)]
@@ -69,6 +70,8 @@ def load_tasks(
             print(f"error: {error}", file=sys.stderr)
             return None
         task.name = name
+        if args.manual:
+            set_manual(task)
         tasks[name] = task
     return tasks
 

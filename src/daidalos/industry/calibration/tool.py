@@ -9,6 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 _MIN_POSES = 3
 _WORST_CONDITION = 1e6
+LARGE_CONDITION = 20.0
+"""Condition number above which the geometry is bad: tilts of some 6 degrees."""
+
+LARGE_DEVIATION = 1e-3
+"""Deviation above which a result is doubtful [m]."""
 
 
 class CalibrationError(ValueError):
@@ -32,6 +37,8 @@ class ToolCalibration:
         Standard deviation of each component of the offset [m], from the residual and the geometry of the poses.
     condition : float
         Condition number of the equations: 2 to 10 with tilts of 30 to 60 degrees, large with small tilts.
+    covariance : (3, 3) array
+        Covariance of the offset [m^2], whose diagonal is the square of `deviation`.
     """
 
     offset: NDArray[np.float64]
@@ -39,6 +46,23 @@ class ToolCalibration:
     residual_m: float
     deviation: NDArray[np.float64]
     condition: float
+    covariance: NDArray[np.float64]
+
+    def warnings(self) -> list[str]:
+        """Return what makes the offset doubtful: small tilts between the poses, large errors, no redundancy."""
+        found = []
+        if self.condition > LARGE_CONDITION:
+            found.append(
+                f"bad geometry: condition {self.condition:.0f}, more than {LARGE_CONDITION:.0f}; tilt the tool farther "
+                "between the poses, about two axes"
+            )
+        if self.deviation.max() > LARGE_DEVIATION:
+            found.append(f"the offset is uncertain by {1e3 * self.deviation.max():.2f} mm (1 sigma); touch more poses")
+        if self.residual_m > LARGE_DEVIATION:
+            found.append(
+                f"the touches are {1e3 * self.residual_m:.2f} mm apart: one of them is wrong, or the tip moved"
+            )
+        return found
 
 
 def calibrate_tool(positions: ArrayLike, rotations: ArrayLike) -> ToolCalibration:
@@ -77,4 +101,50 @@ def calibrate_tool(positions: ArrayLike, rotations: ArrayLike) -> ToolCalibratio
         residual_m=float(np.sqrt(np.mean(np.sum(errors.reshape(-1, 3) ** 2, axis=1)))),
         deviation=np.sqrt(np.diag(covariance)[:3]),
         condition=condition,
+        covariance=covariance[:3, :3],
     )
+
+
+def tool_rotation(
+    calibration: ToolCalibration,
+    z_pose: tuple[ArrayLike, ArrayLike],
+    x_pose: tuple[ArrayLike, ArrayLike] | None = None,
+) -> NDArray[np.float64]:
+    """Return the rotation (3, 3) of the tool, flange from tool, from poses with the touched point on its axes.
+
+    Without a pose for x, the tool's x axis is as near as it can be to that of the flange.
+
+    Parameters
+    ----------
+    calibration
+        The offset, and the touched point.
+    z_pose, x_pose
+        Position (3,) [m] and rotation (3, 3) of the flange with the touched point on the positive z or x axis.
+
+    Raises
+    ------
+    CalibrationError
+        Where the point is less than 10 mm from the tool's tip, or both axes are nearly parallel.
+    """
+    z = _direction(calibration, z_pose, "z")
+    x = _direction(calibration, x_pose, "x") if x_pose is not None else np.eye(3)[0]
+    if x_pose is None and abs(z[0]) > _PARALLEL:
+        x = np.eye(3)[1]
+    if abs(float(x @ z)) > _PARALLEL:
+        raise CalibrationError("the points on z and x lie in nearly the same direction from the tip")
+    x = x - (x @ z) * z
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+_PARALLEL = 0.94
+_SHORTEST_AXIS = 0.01
+
+
+def _direction(calibration: ToolCalibration, pose: tuple[ArrayLike, ArrayLike], axis: str) -> NDArray[np.float64]:
+    position, rotation = (np.asarray(one, float) for one in pose)
+    way = rotation.T @ (calibration.point - position) - calibration.offset
+    length = float(np.linalg.norm(way))
+    if length < _SHORTEST_AXIS:
+        raise CalibrationError(f"the point on {axis} is {1e3 * length:.1f} mm from the tip; move at least 10 mm away")
+    return np.asarray(way / length)

@@ -149,7 +149,8 @@ class ArmRobot:
         if move.duration is not None:
             if not move.duration > 0.0:
                 raise FatalError(f"\\T takes more than 0 s, not {move.duration:g}")
-            limits = Limits(math.inf, math.inf, curve.length / move.duration, *_shares(limits))
+            greatest = MM * settings.greatest_speed
+            limits = Limits(greatest, math.inf, curve.length / move.duration, *_shares(limits))
         movement = Movement(curve, limits, zone, tool, move.line)
         if curve.length >= SHORTEST:
             self._sample(move, movement, start)

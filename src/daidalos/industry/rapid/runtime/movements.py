@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 MIN_SPEED = 1e-3
 """Least speed of the tool [mm/s]."""
 
+MANUAL_SPEED = 250.0
+"""Greatest speed of the tool in manual mode [mm/s]."""
+
 FINE: list[Any] = [True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 
 
@@ -70,7 +73,14 @@ def _is_taken(task: Task, move: Move) -> bool:
 def _scaled(task: Task, speed: list[float]) -> list[float]:
     """Return speeddata as VelSet leaves it."""
     share, greatest = task.settings.get("speeds", (1.0, math.inf))
+    greatest = min(greatest, motion_settings(task).greatest_speed)
     return [min(speed[0] * share, greatest), *(one * share for one in speed[1:])]
+
+
+def set_manual(task: Task) -> None:
+    """Put a task into manual mode with reduced speed: the tool is no faster than 250 mm/s."""
+    task.settings["is_manual"] = True
+    _set_motion(task, greatest_speed=MANUAL_SPEED)
 
 
 def motion_settings(task: Task) -> MotionSettings:

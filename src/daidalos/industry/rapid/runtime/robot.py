@@ -27,6 +27,8 @@ class MotionSettings:
         Whether a wrist singularity may be passed by turning the tool (SingArea \Wrist).
     circle
         How the tool turns on a circle (CirPathMode): ``path``, ``object`` or ``point``.
+    greatest_speed
+        Greatest speed of the tool [mm/s], whatever the instruction says: that of manual mode.
     """
 
     acceleration: float = 1.0
@@ -36,6 +38,7 @@ class MotionSettings:
     checks_joint: bool = True
     turns_wrist: bool = False
     circle: Literal["path", "object", "point"] = "path"
+    greatest_speed: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -251,7 +254,7 @@ class SimpleRobot:
         self.moves.append(move)
         self._left = max(_share(length, move.speed[0]), _share(angle, move.speed[1]))
         if move.duration is not None:
-            self._left = move.duration
+            self._left = max(move.duration, _share(length, move.settings.greatest_speed))
         speed = length / self._left if self._left > 0.0 else math.inf
         for event in move.events:
             before = length - event.distance if event.is_from_start else event.distance
