@@ -19,7 +19,6 @@ OTHER_CLOCKS = {
 }
 ALLOWED = {
     "industry/assistance/laser_projector.py": "the time stamps of frames, which a projector expects in real time",
-    "industry/assistance/light_tower.py": "the repetition of DMX levels that Art-Net asks for",
     "industry/egm/client.py": "how long a controller is silent, and the time stamp of guidance",
     "industry/egm/controller_server.py": "the cycle of a controller, which does not wait",
     "industry/lighting/device.py": "how long a broker is lost, and how often the state is published",
@@ -28,6 +27,9 @@ ALLOWED = {
     "industry/rsi/client.py": "how long a robot is silent, and the computing time that is reported",
     "industry/rsi/controller_server.py": "the cycle of a controller, which does not wait",
     "industry/servoing/experiments.py": "cycles in real time, where they are asked for",
+    "industry/rws/certificate.py": "when a certificate begins to hold",
+    "industry/rws/controller.py": "how long a program that computes is waited for",
+    "industry/rws/server.py": "how often changes are looked for that are sent over a web socket",
     "industry/welding/rapid_paths.py": "the computing time of a program that may be endless",
     "navigation/planners/search.py": "the computing time of a search, which max_planning_time limits",
     "nodes/abb_hardware_interface/_hardware.py": "how long a controller is waited for",

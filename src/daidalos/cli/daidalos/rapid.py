@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from daidalos.cli.daidalos.rapid_calibrate import add_calibrate
+from daidalos.cli.daidalos.rapid_serve import add_serve_arguments, serve_program
 from daidalos.cli.daidalos.rapid_target import add_target
 from daidalos.common.errors import UserError
 
@@ -22,7 +23,7 @@ class RapidVerb:
         commands = parser.add_subparsers(
             title="commands",
             required=True,
-            metavar="check | format | run | trace | write | draw | calibrate | server | debug",
+            metavar="check | format | run | serve | trace | write | draw | calibrate | server | debug",
         )
         check = commands.add_parser("check", help="find errors; exit status 0 without errors, else 2")
         check.add_argument("path", type=Path, help="a module, a program file (.pgf) or a folder")
@@ -56,6 +57,11 @@ class RapidVerb:
         run.add_argument("--action", metavar="NAME", help="move a real arm by this FollowJointTrajectory action")
         add_target(run)
         run.set_defaults(_command=_run)
+
+        serve = commands.add_parser("serve", help="run a program on a controller with ABB's Robot Web Services")
+        _add_program(serve)
+        add_serve_arguments(serve)
+        serve.set_defaults(_command=_serve_program)
 
         trace = commands.add_parser("trace", help="run a program on an arm, and write a report of its motion")
         _add_program(trace)
@@ -185,6 +191,10 @@ def _run(args: argparse.Namespace) -> int:
     from daidalos.cli.daidalos.rapid_run import run_program
 
     return run_program(args)
+
+
+def _serve_program(args: argparse.Namespace) -> int:
+    return serve_program(args)
 
 
 def _trace(args: argparse.Namespace) -> int:

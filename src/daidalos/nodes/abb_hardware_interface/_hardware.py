@@ -71,7 +71,7 @@ class AbbSystem(Hardware):
         self.commands.values[:] = np.nan
 
     def deactivate(self) -> None:
-        """Tell the robot to stay where it is."""
+        """Hold the robot where it is."""
         if self._state is not None and self._client is not None:
             self._client.send_joints(self._state.joints)
         self._is_active = False
