@@ -12,6 +12,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from daidalos.cli.daidalos.assist_calibration import add_calibration
+from daidalos.cli.daidalos.assist_calibration import calibrate as calibrate_projector
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
@@ -34,18 +36,10 @@ class AssistVerb:
         check.add_argument("sequence", type=Path, metavar="SEQUENCE", help="YAML file with devices and steps")
         check.set_defaults(_command=_check)
         calibrate = commands.add_parser(
-            "calibrate", help="find the homography of a video projector by clicks on known points"
+            "calibrate", help="find the homography of a video projector by clicks on known points, or by a camera"
         )
-        calibrate.add_argument("output", type=Path, metavar="OUTPUT", help="file of the pairs, which must not exist")
-        calibrate.add_argument(
-            "--point", type=float, nargs=2, action="append", metavar=("X", "Y"), dest="points",
-            help="known point of the plane [m], four or more times (default: the corners of a table of 2 x 1.5 m)",
-        )  # fmt: skip
-        calibrate.add_argument(
-            "--size", type=int, nargs=2, default=(1280, 720), metavar=("W", "H"), help="of the picture [pixels]"
-        )
-        calibrate.add_argument("--port", type=int, default=8770, metavar="N", help="of the page (default: 8770)")
-        calibrate.set_defaults(_command=_calibrate)
+        add_calibration(calibrate)
+        calibrate.set_defaults(_command=calibrate_projector)
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run the command."""
@@ -169,40 +163,6 @@ def _topics(sequence: Sequence, runner: Runner) -> Iterator[None]:
         rclpy.try_shutdown()
         thread.join()
         node.destroy_node()
-
-
-def _calibrate(args: argparse.Namespace) -> int:
-    """Find a homography by clicks in the projected picture."""
-    import queue
-
-    from daidalos.industry.assistance.homography import MIN_PAIRS, fit, write_pairs
-    from daidalos.industry.assistance.picture_server import PictureServer
-    from daidalos.industry.assistance.video_projector import draw_text
-
-    points = args.points or [[-1.0, -0.75], [-1.0, 0.75], [1.0, -0.75], [1.0, 0.75]]
-    if len(points) < MIN_PAIRS:
-        raise UserError(f"a homography needs at least {MIN_PAIRS} points")
-    if args.output.exists():
-        raise UserError(f"{args.output} exists; name another file")
-    width, height = args.size
-    if not (16 <= width <= 16384 and 16 <= height <= 16384):
-        raise UserError("--size must be from 16 to 16384 pixels")
-    clicks: queue.SimpleQueue[tuple[float, float]] = queue.SimpleQueue()
-    server = PictureServer("127.0.0.1", args.port, lambda x, y: clicks.put((x * width, y * height)))
-    pixels = []
-    try:
-        print(f"fill the projector's screen with http://127.0.0.1:{server.port}/", flush=True)
-        for x, y in points:
-            text = f"Click where the point [{x:g}, {y:g}] of the plane lies"
-            server.show(draw_text((width, height), text))
-            print(text, flush=True)
-            pixels.append(clicks.get())
-    finally:
-        server.close()
-    found = fit(points, pixels)
-    write_pairs(args.output, points, pixels)
-    print(f"residual {found.residual:.2f} pixels, written to {args.output}")
-    return 0
 
 
 def _report(line: str) -> None:

@@ -111,6 +111,17 @@ def draw_text(size: tuple[int, int], text: str) -> bytes:
     return _png(picture)
 
 
+def draw_disc(size: tuple[int, int], center: tuple[float, float], radius: float) -> bytes:
+    """Return a black picture of a size with a white disc [pixels], none where its radius is 0, in PNG."""
+    from PIL import ImageDraw
+
+    picture = _new(size)
+    if radius > 0.0:
+        (x, y), draw = center, ImageDraw.Draw(picture)
+        draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=(255, 255, 255))
+    return _png(picture)
+
+
 def _new(size: tuple[int, int]) -> Image:
     from PIL import Image as images
 
