@@ -14,7 +14,7 @@ from sensor_msgs.msg import JointState
 
 from daidalos.industry.motion.kinematics import forward
 from daidalos.industry.robots import ARMS
-from end_to_end.processes import DAIDALOS, ROS2, Command
+from end_to_end.processes import DAIDALOS, ROS2, Command, finished
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(180)]
 
@@ -49,6 +49,7 @@ def test_program_moves_the_simulated_arm(tmp_path: Path, domain: int) -> None:
                 run.wait_for_line("main ended")
         finally:
             rclpy.shutdown()
+        drawn = draw_a_letter(tmp_path, domain)
         simulator.interrupt()
     arm = ARMS["irb120"]
     positions = forward(arm, np.array(seen))[:, :3, 3]
@@ -57,3 +58,19 @@ def test_program_moves_the_simulated_arm(tmp_path: Path, domain: int) -> None:
     assert np.abs(on_line[:, 0] - 0.35).max() < 0.004
     assert positions[:, 1].max() == pytest.approx(0.1, abs=0.004)
     assert np.linalg.norm(positions - np.array([0.35, 0.1, 0.32]), axis=1).min() > 0.004
+    assert {"sheet", "ink_0"} <= drawn
+
+
+def draw_a_letter(folder: Path, domain: int) -> set[str]:
+    """Draw a letter on a sheet in the simulator, compare it, and return the models that are there then."""
+    letter, picture = folder / "letter.mod", folder / "letter.svg"
+    written = finished(*DAIDALOS, "rapid", "write", "L", "-o", str(letter), domain=domain)
+    assert written.returncode == 0, written.stderr
+    options = ("--sim", "--text", "L", "-o", str(picture))
+    drawn = finished(*DAIDALOS, "rapid", "draw", str(letter), *options, domain=domain)
+    assert drawn.returncode == 0, drawn.stderr
+    assert float(drawn.stderr.split("worst deviation")[1].split()[0]) <= 0.2
+    assert picture.read_text().count("<polyline") == 1
+    asked = (*ROS2, "service", "call", "/get_model_list", "gazebo_msgs/srv/GetModelList")
+    models = finished(*asked, domain=domain).stdout
+    return set(models.split("model_names=[")[1].split("]")[0].replace("'", "").split(", "))

@@ -92,6 +92,9 @@ class RapidVerb:
         draw.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.svg", help="the picture")
         draw.add_argument("--force", action="store_true", help="replace an existing picture")
         draw.add_argument("--sheet", metavar="NAME", help="work object of the sheet (default: the program's first)")
+        draw.add_argument(
+            "--sim", action="store_true", help="draw with the arm of `bringup.launch.py`, on a sheet there"
+        )
         draw.add_argument("--text", metavar="TEXT", help="letters that the drawing is compared with")
         _add_text(draw)
         draw.set_defaults(_command=_draw)

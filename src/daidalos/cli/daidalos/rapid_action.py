@@ -13,6 +13,8 @@ import numpy as np
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
+    from rclpy.node import Node
+
     from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
 
 ACTION = "/joint_trajectory_controller/follow_joint_trajectory"
@@ -55,7 +57,9 @@ class Follower:
         self._client = ActionClient(self._node, FollowJointTrajectory, action)
         self._action = action
         self._joints: dict[str, float] = {}
-        self._node.create_subscription(JointState, "/joint_states", self._on_joints, 10)
+        self.listeners: list[Callable[[np.ndarray], None]] = []
+        """Called with the angles (6,) [rad] of each state of the joints, in another thread."""
+        self._node.create_subscription(JointState, "/joint_states", self._on_joints, 1000)
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self._thread = threading.Thread(target=self._spin, daemon=True)
@@ -90,6 +94,15 @@ class Follower:
 
     def _on_joints(self, message: Any) -> None:
         self._joints = dict(zip(message.name, message.position, strict=False))
+        if self.listeners and all(name in self._joints for name in JOINTS):
+            angles = np.array([self._joints[name] for name in JOINTS])
+            for listener in self.listeners:
+                listener(angles)
+
+    @property
+    def node(self) -> Node:
+        """Return the node, which another thread spins."""
+        return self._node
 
     def positions(self) -> np.ndarray:
         """Return the present angles (6,) [rad].

@@ -12,6 +12,8 @@ from daidalos.cli.daidalos.rapid_run import check_output, run_task, write_output
 from daidalos.common.errors import UserError
 
 if TYPE_CHECKING:
+    from daidalos.industry.motion.orientations import Array
+    from daidalos.industry.rapid.lettering.strokes import Stroke
     from daidalos.industry.rapid.runtime.task import Task
 
 SAMPLING_S = 0.002
@@ -55,34 +57,71 @@ def draw_program(args: argparse.Namespace) -> int:
     UserError
         Where the output exists, there is no such work object, or nothing is drawn.
     """
-    import numpy as np
-
-    from daidalos.industry.rapid.lettering.drawing import compare, drawn_strokes, picture
+    from daidalos.industry.rapid.lettering.drawing import compare, picture
     from daidalos.industry.rapid.lettering.strokes import strokes_of_text
-    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot, matrix_of
-    from daidalos.industry.rapid.runtime.robot import wobj_pose
 
     check_output(args)
     wanted = strokes_of_text(args.text, args.height, args.font) if args.text else None
-    task = load_task(args, None, SAMPLING_S)
-    if task is None:
+    found = _draw_in_simulator(args) if args.sim else _draw(args)
+    if found is None:
         return 2
-    sheet = _sheet(task, args.sheet)
-    status = run_task(task, args)
-    assert isinstance(task.robot, ArmRobot)
-    frame = matrix_of(wobj_pose(sheet))
-    frame[:3, 3] *= 1e3
-    positions = [1e3 * one.positions for one in task.robot.samples]
-    drawn = drawn_strokes(np.concatenate(positions), frame) if positions else []
+    status, drawn = found
     if not drawn:
         raise UserError(
             f"{args.path}: the pen has drawn nothing on the sheet; --sheet NAME says which work object it is"
         )
     write_output(args, picture(drawn))
     if wanted is not None:
-        found = compare(drawn, wanted)
-        print(f"overlap {100.0 * found.overlap:.1f} %, worst deviation {found.deviation:.3f} mm", file=sys.stderr)
+        both = compare(drawn, wanted)
+        print(f"overlap {100.0 * both.overlap:.1f} %, worst deviation {both.deviation:.3f} mm", file=sys.stderr)
     return status
+
+
+def _draw(args: argparse.Namespace) -> tuple[int, list[Stroke]] | None:
+    """Run a program on the model of an arm; return the exit status and what its pen draws, None without a program."""
+    import numpy as np
+
+    from daidalos.industry.rapid.lettering.drawing import drawn_strokes
+    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+
+    task = load_task(args, None, SAMPLING_S)
+    if task is None:
+        return None
+    frame = _sheet_frame(task, args.sheet)
+    status = run_task(task, args)
+    assert isinstance(task.robot, ArmRobot)
+    positions = [1e3 * one.positions for one in task.robot.samples]
+    return status, drawn_strokes(np.concatenate(positions), frame) if positions else []
+
+
+def _draw_in_simulator(args: argparse.Namespace) -> tuple[int, list[Stroke]] | None:
+    """Run a program on the simulated arm, with a sheet on which its pen draws; return as `_draw` does."""
+    from daidalos.cli.daidalos.rapid_action import ACTION, PERIOD_S, Follower
+    from daidalos.cli.daidalos.rapid_sheet import SimulatedSheet
+    from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+
+    with Follower(ACTION, use_sim_time=True) as follower:
+        task = load_task(args, follower, PERIOD_S)
+        if task is None:
+            return None
+        assert isinstance(task.robot, ArmRobot)
+        present = follower.positions()
+        sheet = SimulatedSheet(follower.node, task.robot, _sheet_frame(task, args.sheet))
+        follower.start(task.robot, present)
+        follower.listeners.append(sheet.record)
+        status = run_task(task, args)
+        follower.finish()
+        return status, sheet.strokes()
+
+
+def _sheet_frame(task: Task, name: str | None) -> Array:
+    """Return the pose of the sheet in the base (4, 4) [mm]."""
+    from daidalos.industry.rapid.runtime.arm_robot import matrix_of
+    from daidalos.industry.rapid.runtime.robot import wobj_pose
+
+    frame = matrix_of(wobj_pose(_sheet(task, name)))
+    frame[:3, 3] *= 1e3
+    return frame
 
 
 def _sheet(task: Task, name: str | None) -> list[Any]:

@@ -39,7 +39,7 @@ class Comparison:
     deviation: float
 
 
-def drawn_strokes(positions: Array, frame: Array) -> list[Stroke]:
+def drawn_strokes(positions: Array, frame: Array, contact: float = CONTACT) -> list[Stroke]:
     """Return the strokes of a pen whose tip has been at positions (n, 3) [mm] in the base.
 
     Parameters
@@ -47,11 +47,13 @@ def drawn_strokes(positions: Array, frame: Array) -> list[Stroke]:
     positions
         Positions in their order.
     frame
-        Pose of the sheet in the base (4, 4) [mm]; the pen draws where it is at most `CONTACT` above it.
+        Pose of the sheet in the base (4, 4) [mm].
+    contact
+        Height of the tip above the sheet up to which it draws [mm].
     """
     on_sheet = (positions - frame[:3, 3]) @ frame[:3, :3]
     found = []
-    for is_down, group in groupby(on_sheet.tolist(), key=lambda one: bool(one[2] <= CONTACT)):
+    for is_down, group in groupby(on_sheet.tolist(), key=lambda one: bool(one[2] <= contact)):
         line: list[Point] = [(x, y) for x, y, _ in group]
         if is_down and len(line) > 1:
             found.append(Stroke(line))

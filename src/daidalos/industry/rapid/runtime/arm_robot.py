@@ -326,6 +326,11 @@ class ArmRobot:
         """Return the angles."""
         return [np.degrees(self._joints()).tolist(), list(_NO_AXES)]
 
+    @property
+    def tool(self) -> Array:
+        """Return the pose (4, 4) of the latest movement's tool on the flange [m]."""
+        return self._tool
+
     def _tool_pose(self) -> Pose:
         return _pose(forward(self.arm, self._joints()) @ self._tool)
 
