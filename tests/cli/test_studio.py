@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from daidalos.bags.writer import BagWriter, WriterOptions
 from daidalos.cli.daidalos import main
 
 
@@ -37,6 +38,12 @@ def test_a_folder_that_is_no_bag_is_named(tmp_path: Path, capsys: pytest.Capture
     error = capsys.readouterr().err
     assert str(tmp_path) in error
     assert error.count("\n") == 1
+
+
+def test_an_empty_bag_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    BagWriter(tmp_path / "empty", WriterOptions("mcap")).close()
+    assert call("--bag", tmp_path / "empty") == 2
+    assert capsys.readouterr().err == f"daidalos studio: the bag '{tmp_path / 'empty'}' holds no messages\n"
 
 
 def test_a_layout_that_is_absent_is_named(capsys: pytest.CaptureFixture[str]) -> None:

@@ -91,8 +91,11 @@ def _player_command(bag: Path) -> list[str]:
     if not bag.exists():
         raise UserError(f"there is no bag at '{bag}'")
     words = ["-m", "daidalos.cli.ros2", "bag", "play", str(bag), "--loop", "--disable-keyboard-controls"]
+    words += ["--progress-bar-update-rate", "0"]
     try:
         with BagReader(bag) as reader:
+            if not reader.metadata.message_count:
+                raise UserError(f"the bag '{bag}' holds no messages")
             if "/clock" not in reader.topics:  # else there would be two clocks
                 words.append("--clock")
     except BagError as error:
