@@ -1,4 +1,4 @@
-"""Every command of the page on welding, typed, and what it prints compared with what the page says."""
+"""Every command of the pages on welding and seam servoing, typed, and what it prints compared with the page."""
 
 from pathlib import Path
 
@@ -11,13 +11,14 @@ from . import pages
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
 
 
-def test_page(tmp_path: Path) -> None:
+@pytest.mark.parametrize("page", ["welding.md", "seam-servoing.md"])
+def test_page(page: str, tmp_path: Path) -> None:
     pytest.importorskip("termios")
     from terminals import Terminal, environment
 
     from .reader import Reader
 
     reader = Reader(tmp_path, lambda folder: Terminal(environment(1, tmp_path), folder))
-    reader.follow(pages.read(REPOSITORY / "docs" / "welding.md"))
+    reader.follow(pages.read(REPOSITORY / "docs" / page))
     reader.close()
     assert not reader.mismatches, "\n".join(["", *reader.mismatches])

@@ -133,5 +133,8 @@ def test_a_robot_that_nobody_answers_stops_in_real_time() -> None:
         nobody.bind(("127.0.0.1", 0))
         silent = SimulatedController(CONFIGURATION, lambda _: np.zeros(6))
         with ControllerServer(silent, "127.0.0.1", nobody.getsockname()[1]) as server:
+            with pytest.raises(UserError, match=r"nobody answered within 0.05 s"):
+                server.wait_for_partner(0.05)
+            assert silent.total_lost == 0
             server.run(60.0)
     assert silent.stopped == "10 answers in a row were lost"

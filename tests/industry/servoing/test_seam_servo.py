@@ -39,13 +39,13 @@ class Robot:
     """Robot at 5 mm/s that does at once what it is told, and a servo for it."""
 
     def __init__(self, controller: SeamController, source: Source, **settings: float) -> None:
-        self.cycle, self.lateral = 0, 0.0
+        self.cycle, self.lateral, self.start = 0, 0.0, 2000.0
         self.answers: list[float] = []
         self.stops: list[float] = []
         self.servo = SeamServo(controller, ServoSettings(**settings), lambda _: source(self.cycle))
 
     def telegram(self) -> Telegram:
-        place = {"X": 2000.0 + 0.06 * self.cycle, "Y": self.lateral, "Z": 900.0}
+        place = {"X": self.start + 0.06 * self.cycle, "Y": self.lateral, "Z": 900.0}
         return Telegram("Rob", "KUKA", 12 * self.cycle, {"RIst": place, "RSol": place})
 
     def run(self, cycles: int) -> None:
@@ -125,7 +125,7 @@ def test_a_controller_that_computes_nonsense_stops_the_robot(value: float) -> No
 def test_a_robot_that_jumps_or_says_no_place_is_stopped() -> None:
     robot = Robot(Constant(0.0), profiles())
     robot.run(10)
-    robot.cycle += 1000
+    robot.start += 60.0
     robot.run(1)
     assert robot.servo.reason == "the robot's place jumped from 0.5 to 60.6 mm"
     blind = Robot(Constant(0.0), profiles())

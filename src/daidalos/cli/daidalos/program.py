@@ -29,7 +29,7 @@ _DESCRIPTIONS = {
     "sim": "Simulate a world",
     "studio": "Open the studio on the graph, on a bag, with a layout or at a panel",
     "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",
-    "weld": "Correct the paths of welding robots for their elasticity",
+    "weld": "Correct the paths of welding robots, and follow seams",
 }
 VERBS: Kind[Any] = Kind(
     "daidalos_verb",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class WeldVerb:
-    """Correct the paths of welding robots for their elasticity."""
+    """Correct the paths of welding robots, and follow seams."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
         """Declare the arguments of `daidalos weld`."""

@@ -74,7 +74,7 @@ def run_robot(args: argparse.Namespace) -> int:
     from daidalos.industry.rsi.controller_server import ControllerServer
     from daidalos.industry.servoing.servo_cell import RUN_OUT, START, straight_program
 
-    for option in ("speed", "length"):
+    for option in ("speed", "length", "wait"):
         _positive(option, getattr(args, option))
     if not 1 <= args.max_lost <= 1000:
         raise UserError(f"--max-lost is {args.max_lost}, but must be 1 to 1000")
@@ -83,6 +83,7 @@ def run_robot(args: argparse.Namespace) -> int:
     settings = ControllerSettings(cycle=IPO_FAST if args.fast else IPO, max_lost=args.max_lost)
     controller = SimulatedController(_configuration(args.rsi), straight_program(speed), settings)
     with ControllerServer(controller, address, port) as server:
+        server.wait_for_partner(args.wait)
         server.run((START + length + RUN_OUT) / speed)
         figures = {
             "ended": controller.stopped or "the program's end was reached",

@@ -23,6 +23,10 @@ class ConnectionLost(UserError):
     """The robot has stopped sending, or began another run."""
 
 
+class NoTelegram(ConnectionLost):
+    """No telegram came in time."""
+
+
 @dataclass
 class ClientStatistics:
     """What a client has seen.
@@ -114,8 +118,10 @@ class RsiClient:
 
         Raises
         ------
+        NoTelegram
+            When none came within `timeout` [s] of real time.
         ConnectionLost
-            When no telegram came within `timeout` [s] of real time, or its IPOC jumped by more than `MAX_GAP_MS`.
+            When its IPOC jumped by more than `MAX_GAP_MS`.
         """
         deadline = time.monotonic() + timeout
         while True:
@@ -179,7 +185,7 @@ class RsiClient:
             if time.monotonic() > deadline:
                 break
         if newest is None:
-            raise ConnectionLost(f"no telegram of a robot came within {timeout:g} s")
+            raise NoTelegram(f"no telegram of a robot came within {timeout:g} s")
         return newest
 
     def _accepted(self, data: bytes, sender: str) -> Telegram | None:

@@ -80,6 +80,25 @@ class ControllerServer:
             self._socket.recv(MAX_BYTES + 1)
         self.controller.step()
 
+    def wait_for_partner(self, timeout: float) -> None:
+        """Send the first telegram each cycle until somebody answers it.
+
+        Raises
+        ------
+        UserError
+            When nobody does within `timeout` [s] of real time.
+        """
+        deadline = time.monotonic() + timeout
+        while time.monotonic() < deadline:
+            self.send()
+            begin = time.monotonic()
+            self._socket.settimeout(self.controller.settings.cycle)
+            with suppress(BlockingIOError, TimeoutError, ConnectionRefusedError):
+                if not self.controller.take(self._socket.recv(MAX_BYTES + 1)):
+                    return
+            time.sleep(max(begin + self.controller.settings.cycle - time.monotonic(), 0.0))
+        raise UserError(f"nobody answered within {timeout:g} s")
+
     def run(self, duration: float, each_cycle: Callable[[], None] | None = None) -> None:
         """Execute cycles in real time until a duration [s] is over or the robot stops."""
         begin = time.monotonic()

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.extensions import find
-from daidalos.industry.rsi.client import LOOPBACK, ConnectionLost, RsiClient
+from daidalos.industry.rsi.client import LOOPBACK, ConnectionLost, NoTelegram, RsiClient
 from daidalos.industry.rsi.configuration import Configuration
 from daidalos.industry.rsi.controller import ControllerSettings
 from daidalos.industry.rsi.controller_server import ControllerServer
@@ -27,6 +27,8 @@ from daidalos.industry.servoing.servo_run import COMPLETE, SERIES, ServoRun
 WAIT = 5.0
 """Real time in which a telegram must come, and in the simulated cell its answer [s]."""
 WARMING_CYCLES = 300
+LOOK = 0.2
+"""Real time after which a run that waits asks whether it is to be ended [s]."""
 OFF = "off"
 """Name of the run without corrections."""
 
@@ -204,6 +206,7 @@ def run_with_robot(
     profiles: Profiles,
     wait: float,
     watcher: Watcher | None = None,
+    is_ending: Callable[[], bool] = lambda: False,
 ) -> ServoRun:
     """Follow a seam with a robot that sends to a client, until the seam's length is over or the servo stops.
 
@@ -213,6 +216,8 @@ def run_with_robot(
     ----------
     wait : float
         Time in which the robot must begin to send [s].
+    is_ending : callable
+        Returns whether the run is to be ended; asked every `LOOK` while nothing comes.
 
     Raises
     ------
@@ -232,13 +237,19 @@ def run_with_robot(
             watcher(cycle, heights)
 
     servo = SeamServo(controller, settings, profiles, watch)
-    lost = ""
+    lost, waited = "", 0.0
     while last_s < seam.length and servo.state is not State.STOPPED and not lost:
         try:
-            client.answer(servo, wait)
+            client.answer(servo, min(LOOK, wait))
+            waited, wait = 0.0, WAIT
+        except NoTelegram:
+            waited += LOOK
+            if is_ending():
+                lost = "it was ended"
+            elif waited >= wait:
+                lost = f"no telegram of a robot came within {wait:g} s"
         except ConnectionLost as error:
-            if not deviations:
-                raise
             lost = str(error)
-        wait = WAIT
+    if not deviations:
+        raise ConnectionLost(lost)
     return recorder.run(seam, name, servo.reason or lost or COMPLETE, deviations, client)

@@ -25,7 +25,7 @@ Profiles = Callable[[Telegram], NDArray[np.float64] | None]
 ACQUISITION = 3
 """Profiles in a row that must agree before the first joint counts."""
 MAX_ROBOT_STEP = 5e-3
-"""Motion of the robot in a cycle from which its position counts as wrong [m]."""
+"""Motion of the robot from which its position counts as wrong, beside twice that at its speed [m]."""
 
 
 class State(Enum):
@@ -76,6 +76,8 @@ class Cycle:
         Place of the tool along the path and to its left, sum of the corrections, and this cycle's correction.
     seam : float
         Middle of the gap under the sensor, to the left of the path.
+    deviation : float
+        Of the reported place from the seam that was mapped there.
     evaluation : Evaluation or None
     state : State
     reason : str
@@ -88,6 +90,7 @@ class Cycle:
     commanded: float
     correction: float
     seam: float
+    deviation: float
     evaluation: Evaluation | None
     state: State
     reason: str = ""
@@ -127,6 +130,7 @@ class SeamServo:
         self._origin: NDArray[np.float64] | None = None
         self._commanded = 0.0
         self._last_s = 0.0
+        self._last_ipoc: int | None = None
         self._pending: list[float] = []
         self._last_seam = math.nan
         self._unseen = 0
@@ -149,9 +153,11 @@ class SeamServo:
             correction = self._correct(s, lateral)
         seam = math.nan if evaluation is None else evaluation.centre + lateral
         if self._each_cycle is not None:
+            beside = lateral - float(self._map.seam(np.array([s]))[0]) if self._map.known_end >= s else math.nan
             cycle = Cycle(
-                telegram.ipoc, s, lateral, self._commanded, correction, seam, evaluation, self.state, self.reason
-            )
+                telegram.ipoc, s, lateral, self._commanded, correction, seam, beside, evaluation, self.state,
+                self.reason,
+            )  # fmt: skip
             self._each_cycle(cycle, heights)
         self._commanded += correction
         return self._stopped() if self.state is State.STOPPED else self._answer(correction)
@@ -165,9 +171,10 @@ class SeamServo:
         if self._origin is None:
             self._origin = actual
         s, lateral = self._along(actual)
-        if abs(s - self._last_s) > MAX_ROBOT_STEP:
+        passed = 1e-3 * (telegram.ipoc - (telegram.ipoc if self._last_ipoc is None else self._last_ipoc))
+        if abs(s - self._last_s) > MAX_ROBOT_STEP + 2.0 * self._settings.setup.speed * passed:
             self._stop(f"the robot's place jumped from {1e3 * self._last_s:.1f} to {1e3 * s:.1f} mm")
-        self._last_s = s
+        self._last_s, self._last_ipoc = s, telegram.ipoc
         wanted = _position(telegram, "RSol")
         if wanted is not None:  # what the controller really added, without lost answers and beyond its limits
             self._commanded = self._along(wanted)[1]
