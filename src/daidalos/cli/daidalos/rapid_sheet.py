@@ -10,7 +10,7 @@ import numpy as np
 from daidalos.common.errors import UserError
 from daidalos.common.pose3 import Pose
 from daidalos.industry.motion.kinematics import forward
-from daidalos.industry.rapid.lettering.drawing import PEN_WIDTH, drawn_strokes
+from daidalos.industry.rapid.lettering.drawing import drawn_strokes
 from daidalos.industry.rapid.lettering.strokes import Stroke
 
 if TYPE_CHECKING:
@@ -25,6 +25,9 @@ CONTACT = 0.5
 _WAIT_S = 20.0
 _WIDTH, _HEIGHT, _MARGIN = 297.0, 210.0, 60.0
 _THICKNESS = 0.5
+_SHOWN_WIDTH, _SHOWN_HEIGHT = 1.0, 1.0
+"""Size of the lines that are shown [mm]: finer ones are lost from afar."""
+
 _TOLERANCE = 0.02
 """Deviation up to which points are left out of the lines that are shown [mm]."""
 
@@ -128,8 +131,9 @@ class SimulatedSheet:
 def _line(start: Array, end: Array) -> str:
     """Return a piece of a line between two points on the sheet [mm]."""
     (x0, y0), (x1, y1) = start, end
-    length = float(np.hypot(x1 - x0, y1 - y0)) + PEN_WIDTH
-    return _box(((x0 + x1) / 2, (y0 + y1) / 2, 0.1), (length, PEN_WIDTH, 0.2), float(np.arctan2(y1 - y0, x1 - x0)))
+    length = float(np.hypot(x1 - x0, y1 - y0)) + _SHOWN_WIDTH
+    size = (length, _SHOWN_WIDTH, _SHOWN_HEIGHT)
+    return _box(((x0 + x1) / 2, (y0 + y1) / 2, _SHOWN_HEIGHT / 2), size, float(np.arctan2(y1 - y0, x1 - x0)))
 
 
 def _box(place: tuple[float, float, float], size: tuple[float, float, float], yaw: float) -> str:
