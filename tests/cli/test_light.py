@@ -1,5 +1,7 @@
 """`daidalos light`: what reaches a receiver, and what is wrong with what was typed."""
 
+import math
+import re
 import signal
 import socket
 import subprocess
@@ -132,6 +134,17 @@ def test_a_calibration_is_left_and_resumed(config, tmp_path, capsys, monkeypatch
     calibrated.write_text("heads: [{name: spot, position: [9, 9, 9], calibration: found.yaml}]\noutputs: []\n")
     assert main(["light", "point", "0.5", "-0.3", "0.8", "--config", str(calibrated), "--duration", "0.01"]) == 0
     assert capsys.readouterr().out.startswith("spot: pan 30.96")
+
+
+def test_the_law_of_sines_is_printed_for_points_of_a_line(config, tmp_path, capsys, monkeypatch):
+    points = tmp_path / "points.yaml"
+    points.write_text("[[-1, -0.75, 0], [0, -0.75, 0], [1, -0.75, 0], [0.3, 0.75, 0]]\n")
+    output = tmp_path / "found.yaml"
+    monkeypatch.setattr("daidalos.nodes.keyboard.Keyboard", Keys(["\n"] * 9))
+    assert main(["light", "calibrate", "--config", config, "--points", str(points), "-o", str(output)]) == 0
+    said = capsys.readouterr().out
+    reach = math.dist((1.0, -0.75, 0.0), (0.0, 0.0, 2.8))
+    assert re.search(rf"law of sines: position -?0.0000  -?0.0000  2.8000 m; .* {reach:.4f} \+- 0.00\d+ m", said)
 
 
 def test_a_calibration_needs_a_terminal(config, capsys):

@@ -110,7 +110,10 @@ def test_a_hand_there_from_the_beginning_presses_nothing() -> None:
 def test_images_that_come_late_twice_or_not_at_all(film: Film) -> None:
     film.show(arm(), 0.2)
     film.time += 5.0  # nothing came: the hand may have left in between
-    assert film.show(arm(), 1.0) == []
+    assert film.show(arm(), 0.25) == []
+    assert [name for _, name in film.show(arm(), 0.3)] == ["a"]
+    film.time += 5.0
+    assert film.show(arm(), 1.0) == []  # the same hand
     film.show(TABLE)
     film.show(arm(), 0.2)
     for _ in range(20):  # the same image again and again, and older ones

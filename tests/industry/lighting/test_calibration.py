@@ -19,7 +19,7 @@ from daidalos.industry.lighting.calibration import (
     propose,
 )  # fmt: skip
 from daidalos.industry.lighting.kinematics import Angles, Geometry
-from daidalos.industry.lighting.law_of_sines import calibrate_by_sines, distance_to_end
+from daidalos.industry.lighting.law_of_sines import calibrate_by_sines, choose_line, distance_to_end
 
 START = Geometry(Pose.from_xyz_rpy((0.0, 0.0, 2.5), (math.pi, 0.0, 0.0)))
 CORNERS = [(x, y, 0.0) for x in (-1.0, 1.0) for y in (-0.75, 0.75)]
@@ -135,6 +135,16 @@ def test_the_law_of_sines_gives_the_distance_on_both_sides_of_the_right_angle(al
 
     found = distance_to_end(length, seen(ends[0], ends[2]), seen(ends[1], ends[2]))
     assert found.distance == pytest.approx(float(np.linalg.norm(ends[2])), rel=1e-6)
+
+
+def test_a_line_is_found_among_the_points():
+    true = truth(angles=(0.0, 0.0, 0.0))
+    points = [(-1.0, -0.75, 0.0), (1.0, 0.75, 0.0), (0.3, 0.75, 0.0), (1.0, -0.75, 0.0), (0.0, -0.75, 0.0)]
+    observations = observe(true, points, 1)
+    chosen = choose_line([*observations, *observe(true, points, 1)])  # each point twice
+    assert [one.point for one in chosen] == [points[0], points[4], points[3], points[1]]
+    assert choose_line(observations[:4]) is None
+    assert choose_line([observations[0], observations[4], observations[3]]) is None
 
 
 def test_the_method_of_the_workshop_finds_the_pose():

@@ -112,9 +112,30 @@ def _print_result(guided: GuidedCalibration, targets: Sequence[Vector]) -> None:
         print(f"{word} {math.degrees(value):.3f} +- {math.degrees(deviation):.3f} deg")
     print(f"residual {math.degrees(found.residual):.4f} deg, condition {found.condition:.0f}")
     errors = 1e3 * expected_errors(found, targets)
+    _print_sines(guided, found.noise)
     print("expected pointing error over the table [mm], the greatest y at the top:")
     for start in range(len(errors) - COLUMNS, -1, -COLUMNS):
         print("".join(f"{value:7.1f}" for value in errors[start : start + COLUMNS]))
+
+
+def _print_sines(guided: GuidedCalibration, noise: float) -> None:
+    """Print what the workshop's method finds, where three of the points are on a line, with one in the middle."""
+    from daidalos.industry.lighting.calibration import CalibrationError
+    from daidalos.industry.lighting.law_of_sines import calibrate_by_sines, choose_line
+
+    chosen = choose_line(guided.observations)
+    if chosen is None:
+        return
+    try:
+        geometry, line = calibrate_by_sines(chosen)
+    except CalibrationError as error:
+        print(f"law of sines: {error}")
+        return
+    place = "  ".join(f"{value:.4f}" for value in geometry.pose.position)
+    print(
+        f"law of sines: position {place} m; distance to the line's end {line.distance:.4f} +- "
+        f"{line.amplification * noise:.4f} m ({line.amplification:.1f} m/rad)"
+    )
 
 
 def _write(guided: GuidedCalibration, name: str, output: Path, targets: Sequence[Vector]) -> None:

@@ -17,8 +17,8 @@ from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose3 import Pose, Vector, rotation_matrix
 
 Array = NDArray[np.float64]
-MAX_GAP_S = 0.5
-"""Time without images after which nothing is pressed."""
+MAX_GAP_S = 1.0
+"""Time without images after which a hand has to stay for the whole time again."""
 
 _RELEASE_S = 0.2
 """Time for which a place has to be free before it can be pressed again."""
@@ -151,8 +151,7 @@ class HandDetector:
         if len(self._learning) >= self._parameters.frames:
             self._background = _Background(_median(np.array(self._learning)))
             self._learning = []
-            for button in self._buttons.values():
-                button.interrupt()
+            self._buttons = {name: _Button(self._parameters.hold) for name in self._places}
 
     def _pressed(self, depth: Array, nearer: NDArray[np.bool_], camera: Camera) -> set[str]:
         """Return the places into whose spaces a blob of the size of a hand reaches."""
@@ -211,8 +210,7 @@ class _Button:
         self._pressed_since = self._free_since = np.nan
 
     def interrupt(self) -> None:
-        """Forget how long it has been pressed or free; it has to be free before it is pressed."""
-        self._is_armed = False
+        """Forget how long it has been pressed or free."""
         self._pressed_since = self._free_since = np.nan
 
     def update(self, is_pressed: bool, stamp: float) -> bool:

@@ -8,6 +8,7 @@ the angle at P2 is ``delta2 = atan(c1 sin(theta) / (c2 - c1 cos(theta)))`` modul
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from daidalos.common.pose3 import Pose
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.industry.lighting.calibration import CalibrationError, Observation
 from daidalos.industry.lighting.kinematics import Geometry
 
 Array = NDArray[np.float64]
 _STEP = 1e-6
 _MIDDLE_TOLERANCE = 1e-3
+_LEAST_HEIGHT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ def calibrate_by_sines(observations: Sequence[Observation]) -> tuple[Geometry, L
     length = float(np.linalg.norm(points[2] - points[0]))
     if length == 0.0 or np.linalg.norm(0.5 * (points[0] + points[2]) - points[1]) > _MIDDLE_TOLERANCE * length:
         raise CalibrationError("the second point must be in the middle between the first and the third")
-    if np.linalg.norm(np.cross(points[2] - points[0], points[3] - points[0])) < 1e-3 * length**2:
+    if _height(observations[3].point, observations[0].point, observations[2].point) <= _LEAST_HEIGHT * length:
         raise CalibrationError("the fourth point must be beside the line of the others")
     end = distance_to_end(length, _angle(beams[0], beams[2]), _angle(beams[1], beams[2]))
     start = distance_to_end(length, _angle(beams[0], beams[2]), _angle(beams[0], beams[1]))
@@ -91,6 +93,28 @@ def calibrate_by_sines(observations: Sequence[Observation]) -> tuple[Geometry, L
     middle = (line.mean(axis=0) @ beams[1]) * beams[1]
     known = np.vstack([line[0], middle, line[1]])
     return _pose(known, beams[3], points), end
+
+
+def choose_line(observations: Sequence[Observation]) -> list[Observation] | None:
+    """Return the first observations that are arranged for `calibrate_by_sines`, in its order; None without such.
+
+    Of a point that was aimed at several times, the first observation counts.
+    """
+    first = list({one.point: one for one in reversed(observations)}.values())[::-1]
+    for start, end in itertools.combinations(first, 2):
+        middle = 0.5 * (np.array(start.point) + np.array(end.point))
+        length = math.dist(start.point, end.point)
+        inner = [one for one in first if math.dist(one.point, middle) <= _MIDDLE_TOLERANCE * length]
+        beside = [one for one in first if _height(one.point, start.point, end.point) > _LEAST_HEIGHT * length]
+        if inner and beside:
+            return [start, inner[0], end, beside[0]]
+    return None
+
+
+def _height(point: Vector, start: Vector, end: Vector) -> float:
+    """Return the distance of a point from the line through two others."""
+    along = np.subtract(end, start)
+    return float(np.linalg.norm(np.cross(along, np.subtract(point, start))) / np.linalg.norm(along))
 
 
 def _distance(length: float, whole: float, half: float) -> float:

@@ -1,4 +1,4 @@
-"""A work cell in the simulator: a table under a moving head, a laser projector and a depth camera.
+"""A work cell in the simulator: a table under a moving head and a laser projector, and a depth camera.
 
 The devices are real up to the network: `simulated_head` receives Art-Net, turns the axes at the speed of the fixture,
 and shows the beam up to what it meets; `simulated_laser` receives IDN, and shows its picture on what it meets.
@@ -23,10 +23,16 @@ def value(name, kind):
     return ParameterValue(LaunchConfiguration(name), value_type=kind)
 
 
+def words(options):
+    return [str(one) for pair in options.items() for one in pair]
+
+
 def generate_launch_description():
     urdf = share("urdf", "moving_head.urdf")
     studio = {"port": value("port", int), "open_browser": value("open_browser", bool)}
-    camera = {"--x": -0.3, "--z": 2.4, "--roll": pi, "--frame-id": "world", "--child-frame-id": "camera_optical"}
+    has_camera = IfCondition(LaunchConfiguration("camera"))
+    camera = {"-entity": "camera", "-x": -0.3, "-z": 2.4, "-P": pi / 2, "-Y": pi / 2}
+    lens = {"--x": -0.3, "--z": 2.4, "--roll": pi, "--frame-id": "world", "--child-frame-id": "camera_optical"}
     return LaunchDescription(
         [
             DeclareLaunchArgument("studio", default_value="true", description="whether to serve the studio"),
@@ -34,6 +40,7 @@ def generate_launch_description():
             DeclareLaunchArgument("port", default_value="8765", description="of the studio"),
             DeclareLaunchArgument("artnet_port", default_value="6454", description="UDP port of the head's Art-Net"),
             DeclareLaunchArgument("laser", default_value="true", description="whether there is a laser projector"),
+            DeclareLaunchArgument("camera", default_value="false", description="whether there is a depth camera"),
             DeclareLaunchArgument("idn_port", default_value="7255", description="UDP port of the laser's IDN"),
             Node(
                 package="gazebo_ros",
@@ -47,7 +54,14 @@ def generate_launch_description():
             Node(
                 package="tf2_ros",
                 executable="static_transform_publisher",
-                arguments=[str(one) for pair in camera.items() for one in pair],
+                arguments=words(lens),
+                condition=has_camera,
+            ),
+            Node(
+                package="gazebo_ros",
+                executable="spawn_entity.py",
+                arguments=["-file", share("models", "depth_camera.sdf"), *words(camera)],
+                condition=has_camera,
             ),
             Node(
                 package="daidalos_lighting",
