@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import os
 import statistics
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from daidalos.cli.daidalos.bench_barn import summarize
 from daidalos.common.kernels import warm_up
 from daidalos.navigation.contracts import ControlInput, NavigationContext
 from daidalos.navigation.controllers.dwb_controller import DwbController, DwbParameters
@@ -30,10 +31,12 @@ from daidalos.navigation.planners.smac_planner_2d import SmacPlanner2D
 from daidalos.navigation.planners.smac_planner_hybrid import SmacPlannerHybrid, SmacPlannerHybridParameters
 from daidalos.navigation.planners.smac_planner_lattice import SmacPlannerLattice
 from daidalos.navigation.planners.theta_star_planner import ThetaStarPlanner
+from daidalos.testing.barn import BarnPlan, cross, read_worlds
+from daidalos.testing.fleet import run_here
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from tests.navigation.closed_loop import free_pose, jackal, turtlebot
-from tests.navigation.flat_world import FlatWorld, arena, barn_world
+from tests.navigation.closed_loop import free_pose, turtlebot
+from tests.navigation.flat_world import FlatWorld, arena
 
 DATA = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[2] / "shared" / "data")) / "barn"
 ROBOT = Footprint.circle(0.22)
@@ -166,27 +169,23 @@ def measure_arena(kind: str) -> dict[str, float | str]:
     }
 
 
-def measure_barn(worlds: range) -> dict[str, float | str]:
-    """Worlds of the BARN benchmark without a map; the best score there is 0.25."""
+def measure_barn(numbers: range) -> dict[str, float | str]:
+    """Worlds of the BARN benchmark in lock-step, as `daidalos bench barn` tries them; the best score is 0.25."""
     file = DATA / "barn_000_099.npz"
     if not file.is_file():
         return {"navigation.barn": f"no worlds at {file}"}
-    data = np.load(file)
-    goal = np.array([-2.0, 13.0, math.pi / 2])
-    scores, successes, times = [], [], []
-    for index in worlds:
-        stack = jackal(barn_world(data, index), [-2.0, 3.0, math.pi / 2], seed=index)
-        arrival = stack.drive_to(goal, limit=100.0, stop_within=1.0)
-        cells = data[f"path_{index:03d}"] * 0.15 + np.array([-4.575, 5.075])
-        best = path_length(np.concatenate([[[-2.0, 3.0]], cells, goal[None, :2]])) / 2.0
-        successes.append(arrival.reached)
-        times.append(arrival.time)
-        scores.append(arrival.reached * best / min(max(arrival.time, 4.0 * best), 8.0 * best))
+    worlds, plan = read_worlds(file), BarnPlan(file)
+    with tempfile.TemporaryDirectory() as name:
+        chosen = [worlds[number] for number in numbers]
+        records = list(run_here(chosen, lambda process, world: cross(process, world, plan, Path(name)), 1))
+    summary = summarize(records)
     return {
-        "navigation.barn_worlds": float(len(worlds)),
-        "navigation.barn_success": statistics.mean(successes),
-        "navigation.barn_score": statistics.mean(scores),
-        "navigation.barn_mean_time_s": statistics.mean(times),
+        "navigation.barn_worlds": float(summary["worlds"]),
+        "navigation.barn_reached_percent": 100.0 * summary["success_rate"],
+        "navigation.barn_contacts": float(summary["contacts"]),
+        "navigation.barn_score": summary["score"],
+        "navigation.barn_strict_score": summary["strict_score"],
+        "navigation.barn_mean_time_s": summary["mean_time_s"],
     }
 
 
