@@ -66,6 +66,113 @@ int main(int argc, char ** argv)
 }
 """
 
+FRAMES = """
+#include "rclcpp_components/register_node_macro.hpp"
+#include "tf2_geometry_msgs/tf2_geometry_msgs.hpp"
+#include "tf2_ros/buffer.h"
+#include "tf2_ros/static_transform_broadcaster.h"
+#include "tf2_ros/transform_broadcaster.h"
+#include "tf2_ros/transform_listener.h"
+
+namespace frames
+{
+class Frames : public rclcpp::Node
+{
+public:
+  explicit Frames(const rclcpp::NodeOptions & options)
+  : Node("frames", options), buffer_(get_clock()), listener_(buffer_), moving_(this), fixed_(*this)
+  {
+    fixed_.sendTransform(make("base", "laser", 0.0, 0.2, 0.0));
+    timer_ = create_wall_timer(std::chrono::milliseconds(20), [this] {
+      moving_.sendTransform(make("odom", "base", 1.0, 2.0, TF2SIMD_PI / 2));
+    });
+    report_ = create_wall_timer(std::chrono::milliseconds(100), [this] {
+      geometry_msgs::msg::PointStamped point;
+      point.header.frame_id = "laser";
+      point.point.x = 3.0;
+      try {
+        const auto seen = buffer_.transform(point, "tool", tf2::durationFromSec(5.0));
+        RCLCPP_INFO(get_logger(), "seen at %.3f %.3f", seen.point.x, seen.point.y);
+        buffer_.lookupTransform("tool", "nowhere", tf2::TimePointZero);
+      } catch (const tf2::LookupException & error) {
+        RCLCPP_INFO(get_logger(), "lookup: %s", error.what());
+      } catch (const tf2::TransformException & error) {
+        RCLCPP_INFO(get_logger(), "other: %s", error.what());
+      }
+    });
+  }
+
+private:
+  geometry_msgs::msg::TransformStamped make(
+    const std::string & parent, const std::string & child, double x, double y, double yaw)
+  {
+    geometry_msgs::msg::TransformStamped made;
+    made.header.stamp = now();
+    made.header.frame_id = parent;
+    made.child_frame_id = child;
+    made.transform.translation.x = x;
+    made.transform.translation.y = y;
+    tf2::Quaternion rotation;
+    rotation.setRPY(0.0, 0.0, yaw);
+    made.transform.rotation = tf2::toMsg(rotation);
+    return made;
+  }
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+  tf2_ros::TransformBroadcaster moving_;
+  tf2_ros::StaticTransformBroadcaster fixed_;
+  rclcpp::TimerBase::SharedPtr timer_, report_;
+};
+}  // namespace frames
+
+RCLCPP_COMPONENTS_REGISTER_NODE(frames::Frames)
+"""
+
+ROTATIONS = """
+#include <cstdio>
+
+#include "tf2/LinearMath/Transform.h"
+#include "tf2/buffer_core.h"
+#include "tf2/utils.h"
+
+geometry_msgs::msg::TransformStamped sample(double stamp, const tf2::Transform & transform)
+{
+  geometry_msgs::msg::TransformStamped made;
+  made.header.stamp.sec = static_cast<int>(stamp);
+  made.header.stamp.nanosec = static_cast<unsigned>((stamp - made.header.stamp.sec) * 1e9);
+  made.header.frame_id = "a";
+  made.child_frame_id = "b";
+  const tf2::Quaternion q = transform.getRotation();
+  made.transform.translation.x = transform.getOrigin().x();
+  made.transform.rotation.x = q.x();
+  made.transform.rotation.y = q.y();
+  made.transform.rotation.z = q.z();
+  made.transform.rotation.w = q.w();
+  return made;
+}
+
+int main()
+{
+  double r, p, y;
+  while (std::scanf("%lf %lf %lf", &r, &p, &y) == 3) {
+    tf2::Quaternion q;
+    q.setRPY(r, p, y);
+    const tf2::Transform pose(q, tf2::Vector3(1, 2, 3));
+    double roll, pitch, yaw;
+    pose.getBasis().getRPY(roll, pitch, yaw);
+    const tf2::Vector3 back = pose.inverse() * (pose * tf2::Vector3(r, p, y));
+    tf2::BufferCore buffer;
+    buffer.setTransform(sample(1.0, tf2::Transform()), "");
+    buffer.setTransform(sample(2.0, pose), "");
+    const auto half = buffer.lookupTransform("a", "b", tf2::timeFromSec(1.5)).transform;
+    std::printf(
+      "%.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g %.12g\\n", q.x(), q.y(),
+      q.z(), q.w(), roll, pitch, yaw, back.x(), back.y(), back.z(), half.translation.x, half.rotation.x,
+      half.rotation.y, half.rotation.z, half.rotation.w);
+  }
+}
+"""
+
 RECODE = """
 #include <iostream>
 #include <iterator>
@@ -164,6 +271,25 @@ def workspace(tmp_path_factory):
         {"src/sensor.cpp": NODE, "src/recode.cpp": RECODE},
         "<depend>rclcpp</depend><depend>own_msgs</depend><depend>parts</depend><depend>test_msgs</depend>",
     )
+    packages.cmake_package(
+        source,
+        "frames",
+        """
+        foreach(name rclcpp rclcpp_components tf2 tf2_ros tf2_geometry_msgs)
+          find_package(${name} REQUIRED)
+        endforeach()
+        add_library(frames_component SHARED src/frames.cpp)
+        ament_target_dependencies(frames_component rclcpp rclcpp_components tf2_ros tf2_geometry_msgs)
+        rclcpp_components_register_node(frames_component PLUGIN "frames::Frames" EXECUTABLE frames)
+        add_executable(rotations src/rotations.cpp)
+        target_link_libraries(rotations tf2::tf2)
+        install(TARGETS frames_component LIBRARY DESTINATION lib)
+        install(TARGETS rotations DESTINATION lib/${PROJECT_NAME})
+        """,
+        {"src/frames.cpp": FRAMES, "src/rotations.cpp": ROTATIONS},
+        "<depend>rclcpp</depend><depend>rclcpp_components</depend><depend>tf2_ros</depend>"
+        "<depend>tf2_geometry_msgs</depend>",
+    )
     terminal = Terminal(environment(1, home), home / "ws")
     try:
         printed = terminal.run("colcon build", timeout_s=300)
@@ -252,3 +378,37 @@ def test_a_message_cut_short_is_refused(workspace, cut):
 def test_a_length_larger_than_the_message_takes_no_memory(workspace):
     with pytest.raises(ValueError, match="larger than the message"):
         recode(workspace, "UnboundedSequences", b"\0\1\0\0" + b"\xff" * 64)
+
+
+def test_a_component_shares_transforms_with_python(terminal):
+    first, second = terminal(), terminal()
+    first.start("ros2 run frames frames")
+    # The component waits for a frame that a Python node publishes.
+    second.run("sleep 1")
+    second.start("ros2 run tf2_ros static_transform_publisher --x 1 --y 4 --frame-id odom --child-frame-id tool")
+    first.wait_for(r"seen at -0.200 1.000", timeout_s=60)
+    first.wait_for(r'lookup: "nowhere" passed to lookupTransform argument does not exist', timeout_s=60)
+    third = terminal()
+    third.start("ros2 run tf2_ros tf2_echo odom laser")
+    third.wait_for(r"Translation: \[0\.800, 2\.000, 0\.000\]", timeout_s=60)
+    third.wait_for(r"RPY \(degree\) \[0\.000, -?0\.000, 90\.000\]", timeout_s=60)
+
+
+def test_rotations_agree_with_scipy(workspace):
+    import numpy as np
+    from scipy.spatial.transform import Rotation, Slerp
+
+    angles = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 3)) * [np.pi, 1.5, np.pi]
+    text = "\n".join(" ".join(map(repr, row)) for row in angles.tolist())
+    program = workspace / "ws/install/frames/lib/frames/rotations"
+    done = subprocess.run([program], input=text, capture_output=True, text=True, check=True)
+    found = np.array([[float(word) for word in line.split()] for line in done.stdout.splitlines()])
+    assert found.shape == (40, 15)
+    for row, rpy in zip(found, angles, strict=True):
+        wanted = Rotation.from_euler("xyz", rpy)
+        assert abs(np.dot(row[:4], wanted.as_quat())) == pytest.approx(1.0, abs=1e-9)
+        assert row[4:7] == pytest.approx(rpy, abs=1e-9)
+        assert row[7:10] == pytest.approx(rpy, abs=1e-9)
+        half = Slerp([0.0, 1.0], Rotation.concatenate([Rotation.identity(), wanted]))(0.5)
+        assert row[10] == pytest.approx(0.5)
+        assert abs(np.dot(row[11:], half.as_quat())) == pytest.approx(1.0, abs=1e-9)

@@ -33,6 +33,10 @@ _TOOLS = (
 _LIBRARIES = {
     "rosidl_runtime_cpp": "",
     "rclcpp": "builtin_interfaces rcl_interfaces rosgraph_msgs",
+    "rclcpp_components": "rclcpp",
+    "tf2": "builtin_interfaces geometry_msgs",
+    "tf2_geometry_msgs": "geometry_msgs tf2",
+    "tf2_ros": "rclcpp tf2 tf2_msgs",
 }
 """Packages of the prefix that programs link, with what they need."""
 _GENERATOR = Path(__file__).resolve().parents[2] / "interfaces" / "cpp.py"
@@ -127,6 +131,7 @@ def _write_cmake_packages(prefix: Path) -> None:
     texts["ament_cmake_auto"] = f'include("{folder}/ament_cmake_auto.cmake")\nset(ament_cmake_auto_FOUND TRUE)\n'
     for name, needs in _LIBRARIES.items():
         texts[name] = f"find_package(daidalos_cpp REQUIRED)\ndaidalos_library_package({name} {needs})\n"
+    texts["rclcpp_components"] += f'include("{folder}/rclcpp_components.cmake")\n'
     for name, text in texts.items():
         path = prefix / "share" / name / "cmake" / f"{name}Config.cmake"
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -17,11 +17,11 @@ _BUILD = re.compile(
     r"launch_testing_.*|rosbag2.*|domain_coordinator|osrf_.*|python3(-dev)?|python3-setuptools.*|python3-catkin-pkg.*|"
     r"message_(generation|runtime)|ros(bag|launch|lib|msg|node|param|service|test|topic|unit)|"
     r"(common_interfaces|desktop|geometry2|image_common|navigation2|perception|rqt_common_plugins|simulation|sros2)|"
-    r"rclcpp|tf2_ros_py|plotjuggler_ros|ros2(multicast|plugin)|bond_core"
+    r"rclcpp(_components)?|tf2|tf2_ros_py|plotjuggler_ros|ros2(multicast|plugin)|bond_core"
 )
 _COMPILED = re.compile(
     r"rclcpp_.*|pluginlib|class_loader|rcl|rcl_.*|rcutils|rcpputils|libstatistics_collector|eigen3?|eigen3_cmake_module|"
-    r"roscpp.*|nodelet.*|urdf|boost|lib[a-z].*|qt.*|pcl.*|tf2|tf2_(bullet|eigen|kdl)|kdl.*|orocos_kdl.*|urdfdom.*|"
+    r"roscpp.*|nodelet.*|urdf|boost|lib[a-z].*|qt.*|pcl.*|tf2_(bullet|eigen|kdl)|kdl.*|orocos_kdl.*|urdfdom.*|"
     r"(compressed_|theora_)?image_transport(_plugins)?|console_bridge.*|spdlog.*|tinyxml.*|yaml[-_]cpp.*|"
     r"rviz_(common|rendering|ogre_vendor|default_plugins|visual_tools)|gtest|"
     r"controller_interface|hardware_interface|transmission_interface|realtime_tools|control_toolbox|"

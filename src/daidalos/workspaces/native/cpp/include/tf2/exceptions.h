@@ -1,0 +1,2 @@
+// Older name of the header.
+#include "tf2/exceptions.hpp"  // IWYU pragma: export

@@ -1,0 +1,2 @@
+// Older name of the header.
+#include "tf2/time.hpp"  // IWYU pragma: export
