@@ -65,7 +65,7 @@ def test_force_control_is_compared(tmp_path, capsys):
         (["force", "--controller", "pi", "--set", "integrl=1"], "'integrl'"),
         (["force", "--set", "integral=1"], "--set needs one --controller"),
         (["force", "--fault", "sensor@1"], "there is no fault 'sensor'"),
-        (["force", "--fault", "sensor_nan"], "--fault is 'sensor_nan', but KIND@SECONDS is expected"),
+        (["force", "--fault", "sensor_nan"], "'sensor_nan' is no fault; KIND@SECONDS is expected"),
         (["force", "--cell", "none.yaml"], "none.yaml: there is no such file"),
         (["force", "--seed", "-1"], "--seed is -1"),
         (["plate", "--input", "none.npz"], "none.npz: there is no such file"),

@@ -9,7 +9,7 @@ from daidalos.common.documents import DocumentError
 from daidalos.common.errors import UserError
 from daidalos.industry.grinding.height_field import as_arrays, deviation, read_workpiece, scanned
 from daidalos.industry.grinding.passes import even_passes, excess_passes, footprint, tools_along
-from daidalos.industry.grinding.reach import check_reach, flange_poses
+from daidalos.industry.grinding.reach import flange_poses, joints_along
 from daidalos.industry.grinding.records import read_record
 from daidalos.industry.grinding.results import compared, write_job
 from daidalos.industry.grinding.settings import CellParameters, read_cell
@@ -116,12 +116,12 @@ def test_flange_stands_on_the_normal_of_the_clamp():
     normal = np.array([x, 0.0, np.sqrt(0.2**2 - x**2)]) / 0.2
     np.testing.assert_allclose(poses[0, :3, 2], -normal, atol=0.01)
     np.testing.assert_allclose(np.linalg.det(poses[:, :3, :3]), 1.0, atol=1e-12)
-    check_reach("irb8700", [tools], piece)
+    assert joints_along("irb8700", [tools], piece)[0].shape == (len(tools), 6)
     piece.pose[0, 3] = 6.0
     with pytest.raises(UserError, match=r"line 1: .* can not follow the path: point 1 is out of reach"):
-        check_reach("irb8700", [tools], piece)
+        joints_along("irb8700", [tools], piece)
     with pytest.raises(UserError, match="there is no arm 'irb870'; did you mean 'irb8700'"):
-        check_reach("irb870", [tools], piece)
+        joints_along("irb870", [tools], piece)
 
 
 def write_arrays(path, **changes):

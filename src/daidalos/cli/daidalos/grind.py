@@ -54,6 +54,14 @@ class GrindVerb:
         clamp.add_argument("--max-passes", type=int, default=15, metavar="N", help="at most (default: 15)")
         add_job(clamp)
         clamp.set_defaults(_command=_clamp)
+        live = commands.add_parser("live", help="grind in real time, in the studio")
+        live.add_argument("task", choices=("clamp", "plate"), nargs="?", default="clamp", help="(default: clamp)")
+        live.add_argument("--controller", default="pi", metavar="NAME", help="force controller (default: pi)")
+        live.add_argument("--speed", type=finite, default=1.0, help="of the process (default: 1, real time)")
+        live.add_argument("--seed", type=int, default=0, help="of noise and errors (default: 0)")
+        live.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
+        live.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
+        live.set_defaults(_command=_live)
         compare = commands.add_parser("compare", help="compare the figures of two results")
         compare.add_argument("first", type=Path, metavar="FOLDER", help="written by -o")
         compare.add_argument("second", type=Path, metavar="FOLDER", help="written by -o")
@@ -173,6 +181,33 @@ def _show_job(job: Job, figures: dict[str, Any]) -> None:
             f"{one['high_um']:.1f} um, {one['within_percent']:.2f} % within {figures['tolerance_um']:g} um"
         )
     print(f"disc worn by {figures['wear_percent']:.2f} %")
+
+
+def _live(args: argparse.Namespace) -> int:
+    """Launch cell and studio in the foreground."""
+    from launch.actions import IncludeLaunchDescription
+    from launch.launch_description_sources import AnyLaunchDescriptionSource
+
+    from daidalos.cli.daidalos.launching import run_launch
+    from daidalos.cli.ros2.launch import find_launch_file
+    from daidalos.common.extensions import locate
+    from daidalos.industry.grinding.extensions import FORCE_CONTROLLERS
+
+    locate(FORCE_CONTROLLERS, args.controller)
+    if not 0.0 < args.speed <= 20.0:
+        raise UserError(f"--speed is {args.speed:g}, but must be above 0, at most 20")
+    if args.seed < 0:
+        raise UserError(f"--seed is {args.seed}, but must not be negative")
+    settings = {
+        "task": args.task,
+        "controller": args.controller,
+        "speed": str(args.speed),
+        "seed": str(args.seed),
+        "port": str(args.port),
+        "open_browser": str(not args.no_browser).lower(),
+    }
+    source = AnyLaunchDescriptionSource(str(find_launch_file("daidalos_grinding", "demo.launch.py")))
+    return run_launch(IncludeLaunchDescription(source, launch_arguments=list(settings.items())))
 
 
 def _compare(args: argparse.Namespace) -> int:

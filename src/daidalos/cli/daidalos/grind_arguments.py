@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from daidalos.cli.daidalos.weld_arguments import finite
 from daidalos.common.errors import UserError
-from daidalos.common.suggestions import hint
 
 if TYPE_CHECKING:
     from daidalos.industry.grinding.cell import Fault
@@ -104,21 +102,9 @@ def faults(args: argparse.Namespace) -> list[Fault]:
     UserError
         Where there is no such fault, or its time is none.
     """
-    from daidalos.industry.grinding.cell import Fault, FaultKind
+    from daidalos.industry.grinding.cell import parse_fault
 
-    found = []
-    for text in args.faults:
-        kind, _, time = text.partition("@")
-        if kind not in list(FaultKind):
-            raise UserError(f"--fault: there is no fault '{kind}'{hint(kind, FaultKind)}")
-        try:
-            at = finite(time)
-        except argparse.ArgumentTypeError:
-            at = math.nan
-        if not at >= 0.0:
-            raise UserError(f"--fault is '{text}', but KIND@SECONDS is expected")
-        found.append(Fault(FaultKind(kind), at))
-    return found
+    return [parse_fault(text) for text in args.faults]
 
 
 def workpiece(args: argparse.Namespace, default: Callable[[float], Workpiece]) -> Workpiece:

@@ -10,6 +10,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.errors import UserError
+from daidalos.common.suggestions import hint
 from daidalos.industry.grinding import contact_kernels, dynamics_kernels
 from daidalos.industry.grinding.force_control import Command, Measurement, ValveMode
 from daidalos.industry.grinding.height_field import Workpiece
@@ -35,6 +37,26 @@ class Fault:
 
     kind: FaultKind
     time: float
+
+
+def parse_fault(text: str) -> Fault:
+    """Return the fault of a text such as ``sensor_nan@3.0``.
+
+    Raises
+    ------
+    UserError
+        Where there is no such fault, or its time is none.
+    """
+    kind, _, time = text.partition("@")
+    if kind not in list(FaultKind):
+        raise UserError(f"there is no fault '{kind}'{hint(kind, FaultKind)}")
+    try:
+        at = float(time)
+    except ValueError:
+        at = math.nan
+    if not 0.0 <= at < math.inf:
+        raise UserError(f"'{text}' is no fault; KIND@SECONDS is expected")
+    return Fault(FaultKind(kind), at)
 
 
 @dataclass(frozen=True)

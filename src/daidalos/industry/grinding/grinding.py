@@ -119,6 +119,11 @@ class Grinding:
         return max(self._line, 0)
 
     @property
+    def place_on_line(self) -> tuple[int, float]:
+        """Return the segment of the line that the contact is on, from 0, and the share of it that is done."""
+        return self._segment() if self._line >= 0 and self.phase is not Phase.DONE else (0, 0.0)
+
+    @property
     def is_over(self) -> bool:
         """Return whether there is nothing more to do."""
         return self.phase in (Phase.DONE, Phase.STOPPED)

@@ -11,7 +11,6 @@ from daidalos.common.errors import UserError
 from daidalos.industry.grinding.cell import Tool
 from daidalos.industry.grinding.height_field import Workpiece
 from daidalos.industry.robots import arm_named
-from daidalos.industry.robots.arm import Arm
 from daidalos.industry.welding.joint_paths import choose_branch
 
 TOOL_LENGTH = 0.55
@@ -33,18 +32,16 @@ def flange_poses(tools: Sequence[Tool], piece: Workpiece) -> NDArray[np.float64]
     return piece.pose @ poses
 
 
-def check_reach(robot: str, tools: Sequence[Sequence[Tool]], piece: Workpiece) -> Arm:
-    """Return the arm of a name.
+def joints_along(robot: str, tools: Sequence[Sequence[Tool]], piece: Workpiece) -> list[NDArray[np.float64]]:
+    """Return the joint angles (n, 6) of an arm of a name at the points of each line [rad].
 
     Raises
     ------
     UserError
-        Where there is none, or it cannot follow a line; the message names the line and the point.
+        Where there is no such arm, or it cannot follow a line; the message names the line and the point.
     """
     try:
         arm = arm_named(robot)
     except ValueError as error:
         raise UserError(str(error)) from None
-    for number, line in enumerate(tools, 1):
-        choose_branch(arm, flange_poses(line, piece), f"line {number}")
-    return arm
+    return [choose_branch(arm, flange_poses(line, piece), f"line {number}")[0] for number, line in enumerate(tools, 1)]

@@ -129,7 +129,7 @@ def force_figures(record: Record) -> ForceFigures:
     kept: list[NDArray[np.float64]] = []
     overshoots = [0.0]
     for begin, end in zip(bounds[::2], bounds[1::2], strict=True):
-        for first, last, step in _levels(record.wanted[begin:end]):
+        for first, last, step in _levels(record.wanted[begin:end], record.time[begin:end]):
             wanted = record.wanted[begin + last - 1]
             part, times = force[begin + first : begin + last], record.time[begin + first : begin + last]
             settled = (times > times[0] + STEADY_TIME) & (times < times[-1] - SMOOTHING)
@@ -153,7 +153,7 @@ def force_figures(record: Record) -> ForceFigures:
     )
 
 
-def _levels(wanted: NDArray[np.float64]) -> list[tuple[int, int, float]]:
+def _levels(wanted: NDArray[np.float64], time: NDArray[np.float64]) -> list[tuple[int, int, float]]:
     """Return begin, end and the step before it [N] of each stretch of one wanted force that is longer than 0.6 s.
 
     The step is 0 where no such stretch is right before it: a ramp is none.
@@ -162,7 +162,7 @@ def _levels(wanted: NDArray[np.float64]) -> list[tuple[int, int, float]]:
     bounds = [0, *changes.tolist(), len(wanted)]
     found: list[tuple[int, int, float]] = []
     for first, last in itertools.pairwise(bounds):
-        if last - first > 1200 * STEADY_TIME:
+        if time[last - 1] - time[first] > 1.2 * STEADY_TIME:
             is_step = bool(found) and found[-1][1] == first
             found.append((first, last, float(wanted[first] - wanted[first - 1]) if is_step else 0.0))
     return found

@@ -18,7 +18,7 @@ from daidalos.industry.grinding.force_control import ForceController
 from daidalos.industry.grinding.grinding import RAMP_RATE, Grinding
 from daidalos.industry.grinding.height_field import Deviation, Workpiece, deviation, scanned
 from daidalos.industry.grinding.passes import STEP, Line, even_passes, excess_passes, footprint, tools_along
-from daidalos.industry.grinding.reach import check_reach
+from daidalos.industry.grinding.reach import joints_along
 from daidalos.industry.grinding.records import Record, force_figures, recorded
 from daidalos.industry.grinding.settings import PERIOD, CellParameters
 from daidalos.industry.grinding.workpieces import plate
@@ -146,6 +146,8 @@ def _stepped_line() -> Line:
 class JobRun:
     """Job that is done pass by pass: scan, plan, grind, and scan again.
 
+    `joints` has the arm's angles (n, 6) at the points of each line of the last pass [rad].
+
     Parameters
     ----------
     title : str
@@ -184,6 +186,7 @@ class JobRun:
         self._preston = parameters.disc.preston
         self._wear = parameters.disc.wear
         self.scan = self.first_scan = scanned(piece, parameters.sensor.scan_noise, self._rng)
+        self.joints: list[NDArray[np.float64]] = []
         self.time = 0.0
 
     def next_pass(self, robot: str) -> tuple[list[Line], Grinding] | None:
@@ -208,7 +211,7 @@ class JobRun:
         force = float(lines[0].forces.max())
         offset = footprint(self.parameters, self.piece.resolution, force, self.parameters.disc.preston).offset
         tools = [tools_along(line, self.scan, self.scan.surface, self.parameters, offset) for line in lines]
-        check_reach(robot, tools, self.piece)
+        self.joints = joints_along(robot, tools, self.piece)
         controller = self._make()
         cell = Cell(self.parameters, self.piece, offset, controller.mode, self._seed + len(self.passes), self._wear)
         cell.faults = tuple(Fault(one.kind, one.time - self.time) for one in self._faults)
