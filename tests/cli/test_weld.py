@@ -51,6 +51,10 @@ def test_plan_writes_programs_points_figures_and_a_report(line, tmp_path, capsys
         ([*WRENCH, "--speed", "0"], "--speed is 0, but must be greater than 0"),
         ([*WRENCH, "--points", "1"], "--points is 1, but must be 2"),
         ([*WRENCH, "--rotation", "x"], "--rotation is 'x'"),
+        ([*WRENCH, "--process", "fsw"], "--wrench and --process exclude each other"),
+        (["--process", "fws"], "fws: there is no such file, and no process model of this name but 'fsw'"),
+        (["--process", "fsw", "--spindle", "0"], "--spindle is 0, but must be greater than 0 rpm"),
+        (["--process", "fsw", "--speed", "5000"], "the feed is 5000 mm/min, but the process model 'fsw' holds for"),
         (["--wrench", "0", "0", "9e6", "0", "0", "0"], "the load winds axis"),
     ],
 )
@@ -60,6 +64,14 @@ def test_what_is_wrong_is_one_line(arguments, message, line, tmp_path, capsys):
     assert message in error
     assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_process_model_tells_the_wrench(line, tmp_path, capsys):
+    out = str(tmp_path / "out")
+    assert main(["weld", "plan", str(line), "--process", "fsw", "--spindle", "1600", "-o", out, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["wrench"]["fz"]["least"] == pytest.approx(8000.0 * 2.0**-0.3, abs=0.01)
+    assert printed["process"]["components"]["fz"]["spindle_exponent"] == -0.3
 
 
 def test_nothing_is_written_over(line, tmp_path, capsys):

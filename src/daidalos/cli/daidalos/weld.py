@@ -32,6 +32,12 @@ class WeldVerb:
             "--wrench", type=finite, nargs="+", metavar="W",
             help="FX FY FZ [N] MX MY MZ [Nm] that the tool exerts, x ahead, z into the workpiece",
         )  # fmt: skip
+        plan.add_argument(
+            "--process", metavar="fsw|CSV", help="wrench by feed and spindle speed: built-in model, or measured welds"
+        )
+        plan.add_argument(
+            "--spindle", type=finite, default=800.0, metavar="RPM", help="speed of the spindle (default: 800)"
+        )
         plan.add_argument("--speed", type=finite, default=300.0, metavar="MM/MIN", help="of the tool (default: 300)")
         plan.add_argument("--tilt", type=finite, default=2.5, metavar="DEG", help="of the tool (default: 2.5)")
         plan.add_argument(
@@ -80,11 +86,16 @@ def _plan(args: argparse.Namespace) -> int:
     import numpy as np
 
     from daidalos.industry.welding.planning import Request, plan
+    from daidalos.industry.welding.process import process_model
     from daidalos.industry.welding.reading import read_seam
     from daidalos.industry.welding.results import write_plan
 
     if args.wrench is not None and len(args.wrench) != 6:
         raise UserError(f"--wrench has {len(args.wrench)} values, but FX FY FZ [N] MX MY MZ [Nm] are expected")
+    if args.wrench is not None and args.process is not None:
+        raise UserError("--wrench and --process exclude each other")
+    if not args.spindle > 0.0:
+        raise UserError(f"--spindle is {args.spindle:g}, but must be greater than 0 rpm")
     if not args.speed > 0.0:
         raise UserError(f"--speed is {args.speed:g}, but must be greater than 0 mm/min")
     if args.points is not None and not 2 <= args.points <= 100_000:
@@ -94,6 +105,8 @@ def _plan(args: argparse.Namespace) -> int:
     request = Request(
         speed=args.speed / 60e3,
         wrench=None if args.wrench is None else np.array(args.wrench),
+        process=None if args.process is None else process_model(args.process),
+        spindle_speed=args.spindle / 60.0,
         tilt=math.radians(args.tilt),
         rotation=None if args.rotation == "best" else math.radians(_angle(args.rotation)),
         points=args.points,
@@ -122,6 +135,9 @@ def _show(planned: Plan) -> None:
         f"{figures['points']} points over {figures['length_mm']:.1f} mm, "
         f"{len(planned.correction.convergence)} iterations to {1e3 * planned.correction.convergence[-1][0]:.7f} mm"
     )
+    if figures["process"] is not None:
+        ranges = [f"{name} {one['least']:g} to {one['greatest']:g}" for name, one in figures["wrench"].items()]
+        print(f"wrench by the process model {figures['process']['name']}: {', '.join(ranges)}")
     print(f"{'deviation, rms [mm]':24}{'not corrected':>14}{'corrected':>12}")
     for direction in ("ahead", "across", "along_tool"):
         before, after = (figures[state][f"{direction}_rms_mm"] for state in ("before", "after"))

@@ -15,7 +15,7 @@ from daidalos.industry.grinding.supervision import Situation, Supervisor
 
 LIFT_SPEED = 0.15
 """Speed at which the arm lifts the tool off [m/s]."""
-LIFT_FORCE = 30.0
+LIFT_FORCE = 12.0
 """Force with which the piston is drawn back [N]."""
 TRAVEL_SPEED = 0.25
 """Speed of the arm between two lines [m/s]."""

@@ -77,7 +77,11 @@ class Correction:
 
 
 def correct(
-    cell: Cell, desired: NDArray[np.float64], wrenches: NDArray[np.float64], speed: float, title: str = "path"
+    cell: Cell,
+    desired: NDArray[np.float64],
+    wrenches: NDArray[np.float64],
+    speed: float | NDArray[np.float64],
+    title: str = "path",
 ) -> Correction:
     """Compute the programmed path by fixed-point iteration.
 
@@ -93,7 +97,7 @@ def correct(
         Poses of the tool in the base.
     wrenches : array of shape (n, 6)
         That the tool exerts on the workpiece, in the tool's axes [N, Nm].
-    speed : float
+    speed : float or array of shape (n,)
         Of the tool along the path [m/s].
     title : str
         Name of the path in messages.

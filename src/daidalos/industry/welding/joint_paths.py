@@ -74,9 +74,11 @@ def margin(arm: Arm, joints: NDArray[np.float64]) -> float:
     return float((np.minimum(joints - lower, upper - joints) / (upper - lower)).min())
 
 
-def joint_speeds(joints: NDArray[np.float64], distances: NDArray[np.float64], speed: float) -> NDArray[np.float64]:
-    """Return the joint speeds (n, 6) [rad/s] along a path at a speed of the tool [m/s]."""
-    gradient: NDArray[np.float64] = np.gradient(joints, distances, axis=0) * speed
+def joint_speeds(
+    joints: NDArray[np.float64], distances: NDArray[np.float64], speed: float | NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the joint speeds (n, 6) [rad/s] along a path at one speed of the tool, or one for each point [m/s]."""
+    gradient: NDArray[np.float64] = np.gradient(joints, distances, axis=0) * np.reshape(speed, (-1, 1))
     return gradient
 
 

@@ -130,7 +130,7 @@ def write_krl(
     tool: NDArray[np.float64],
     poses: NDArray[np.float64],
     start_axes: NDArray[np.float64],
-    speed: float,
+    speeds: NDArray[np.float64],
 ) -> str:
     """Return a program that moves to the first pose by its axes and then along lines.
 
@@ -144,8 +144,8 @@ def write_krl(
         Of the tool in the robot's base.
     start_axes : array of shape (6,)
         A1 to A6 at the first pose [deg].
-    speed : float
-        [m/s]
+    speeds : array of shape (n,)
+        Of the tool to each pose [m/s].
     """
     axes = ",".join(f"A{number} {value:.4f}" for number, value in enumerate(start_axes, 1))
     lines = [
@@ -154,13 +154,17 @@ def write_krl(
         "; corrected path, written by daidalos weld plan",
         "$BASE=$NULLFRAME",
         f"$TOOL={_aggregate(tool)}",
-        f"$VEL.CP={speed:.6f}",
+        f"$VEL.CP={speeds[0]:.6f}",
         "$APO.CDIS=0.5",
         f"PTP {{{axes}}}",
-        *(f"LIN {_aggregate(pose)} C_DIS" for pose in poses[:-1]),
-        f"LIN {_aggregate(poses[-1])}",
-        "END",
     ]
+    before = f"{speeds[0]:.6f}"
+    for number, (pose, speed) in enumerate(zip(poses, speeds, strict=True), 1):
+        if f"{speed:.6f}" != before:
+            before = f"{speed:.6f}"
+            lines.append(f"$VEL.CP={before}")
+        lines.append(f"LIN {_aggregate(pose)}{' C_DIS' if number < len(poses) else ''}")
+    lines.append("END")
     return "\n".join(lines) + "\n"
 
 

@@ -14,9 +14,13 @@ from daidalos.industry.welding.bsplines import PathSpline, fit_path
 from daidalos.industry.welding.correction import Cell, Correction, correct, deviations, in_axes, pose_errors
 from daidalos.industry.welding.joint_paths import condition_numbers
 from daidalos.industry.welding.placement import Candidate, rotate_about_tool, try_places, try_rotations
+from daidalos.industry.welding.process import ProcessModel
 from daidalos.industry.welding.seam import TILT, Seam, resampled, tool_axes, tool_poses
+from daidalos.industry.welding.seam_csv import WRENCH_COLUMNS
 
 DEFAULT_POINTS = 100
+DEFAULT_SPINDLE_SPEED = 800.0 / 60.0
+"""[turns/s]"""
 FEW_POINTS = 50
 DIRECTIONS = ("ahead", "across", "along_tool")
 
@@ -28,9 +32,13 @@ class Request:
     Attributes
     ----------
     speed : float
-        Of the tool [m/s].
+        Of the tool, where the seam has no feeds [m/s].
     wrench : array of shape (6,) or None
         That the tool exerts on the workpiece, in its axes with x ahead [N, Nm]; None where the seam has its own.
+    process : ProcessModel or None
+        That tells the wrench by the feed and the spindle speed, in place of `wrench`.
+    spindle_speed : float
+        For the process model, where the seam has none [turns/s].
     tilt : float
         Of the tool against the normal [rad].
     rotation : float or None
@@ -43,6 +51,8 @@ class Request:
 
     speed: float
     wrench: NDArray[np.float64] | None
+    process: ProcessModel | None = None
+    spindle_speed: float = DEFAULT_SPINDLE_SPEED
     tilt: float = TILT
     rotation: float | None = 0.0
     points: int | None = None
@@ -67,8 +77,12 @@ class Plan:
         Through the desired path.
     correction : Correction
         The corrected path.
-    speed, rotation : float
-        Of the tool [m/s], and about its axis [rad].
+    speeds : array of shape (n,)
+        Of the tool [m/s].
+    rotation : float
+        About the tool's axis [rad].
+    process : ProcessModel or None
+        That told the wrenches.
     rotations, places : tuple of Candidate
         What was tried, the stiffest first.
     """
@@ -79,10 +93,16 @@ class Plan:
     wrenches: NDArray[np.float64]
     desired_spline: PathSpline
     correction: Correction
-    speed: float
+    speeds: NDArray[np.float64]
     rotation: float
+    process: ProcessModel | None
     rotations: tuple[Candidate, ...]
     places: tuple[Candidate, ...]
+
+    @property
+    def speed(self) -> float:
+        """Return the least speed of the tool [m/s]."""
+        return float(self.speeds.min())
 
     @property
     def before(self) -> NDArray[np.float64]:
@@ -112,6 +132,11 @@ class Plan:
             "points": len(done.desired),
             "length_mm": _mm(done.distances[-1]),
             "speed_mm_per_min": round(60e3 * self.speed, 6),
+            "process": None if self.process is None else self.process.as_json(),
+            "wrench": {
+                name: {"least": round(float(column.min()), 3), "greatest": round(float(column.max()), 3)}
+                for name, column in zip(WRENCH_COLUMNS, self.wrenches.T, strict=True)
+            },
             "rotation_deg": round(math.degrees(self.rotation), 3),
             "cfx": done.branch,
             "before": _figures(self.before, self.turned("before")),
@@ -166,7 +191,8 @@ def plan(cell: Cell, seam: Seam, request: Request, title: str = "path") -> Plan:
     if count is None:
         count = len(seam.positions) if len(seam.positions) >= FEW_POINTS else DEFAULT_POINTS
     dense = resampled(seam, count)
-    wrenches = _wrenches(dense, request.wrench, title)
+    speeds = np.full(count, request.speed) if dense.feeds is None else dense.feeds
+    wrenches = _wrenches(dense, request, speeds, title)
     poses = tool_poses(dense, request.tilt)
     axes = tool_axes(dense, poses)
     rotations: tuple[Candidate, ...] = ()
@@ -181,15 +207,21 @@ def plan(cell: Cell, seam: Seam, request: Request, title: str = "path") -> Plan:
     in_tool = np.concatenate(
         [np.einsum("nij,nj->ni", turned, wrenches[:, part]) for part in (slice(3), slice(3, 6))], 1
     )
-    done = correct(cell, wanted.poses, in_tool, request.speed, title)
-    return Plan(cell, dense, axes, wrenches, wanted, done, request.speed, rotation, rotations, places)
+    done = correct(cell, wanted.poses, in_tool, speeds, title)
+    return Plan(cell, dense, axes, wrenches, wanted, done, speeds, rotation, request.process, rotations, places)
 
 
-def _wrenches(seam: Seam, wrench: NDArray[np.float64] | None, title: str) -> NDArray[np.float64]:
-    if wrench is not None:
-        return np.tile(wrench, (len(seam.positions), 1))
+def _wrenches(seam: Seam, request: Request, speeds: NDArray[np.float64], title: str) -> NDArray[np.float64]:
+    """Return the wrenches (n, 6) of a request at the points of a seam with speeds of the tool (n,) [m/s]."""
+    if request.wrench is not None:
+        return np.tile(request.wrench, (len(seam.positions), 1))
+    if request.process is not None:
+        turns = np.full_like(speeds, request.spindle_speed) if seam.spindle_speeds is None else seam.spindle_speeds
+        return request.process.wrenches(speeds, turns)
     if seam.wrenches is None:
-        raise UserError(f"{title}: has no columns fx, fy, fz, mx, my, mz; give --wrench FX FY FZ MX MY MZ")
+        raise UserError(
+            f"{title}: has no columns fx, fy, fz, mx, my, mz; give --wrench FX FY FZ MX MY MZ, or --process"
+        )
     return seam.wrenches
 
 

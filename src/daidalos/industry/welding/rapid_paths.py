@@ -67,7 +67,7 @@ def write_rapid(
     poses: NDArray[np.float64],
     configurations: NDArray[np.int64],
     start: NDArray[np.float64],
-    speed: float,
+    speeds: NDArray[np.float64],
 ) -> str:
     """Return a module whose main procedure moves to the first pose by the axes and then along lines.
 
@@ -85,7 +85,7 @@ def write_rapid(
         confdata of the poses.
     start : array of shape (6,)
         Angles of the axes at the first pose [deg].
-    speed : float
+    speeds : array of shape (n,)
         [m/s]
     """
     none = "[9E9,9E9,9E9,9E9,9E9,9E9]"
@@ -94,17 +94,22 @@ def write_rapid(
         f"[{_pose(pose)},[{','.join(str(int(one)) for one in conf)}],{none}]"
         for pose, conf in zip(poses, configurations, strict=True)
     ]
+    texts = [f"{1e3 * speed:.4f}" for speed in speeds]
+    names = {text: f"vWeld{number or ''}" for number, text in enumerate(dict.fromkeys(texts))}
     zones = ["z0"] * (len(targets) - 1) + ["fine"]
     return "\n".join(
         [
             f"MODULE {name}",
             "  ! corrected path, written by daidalos weld plan",
             f"  PERS tooldata tWeld := [TRUE,[{_pose(tool)}],{load}];",
-            f"  CONST speeddata vWeld := [{1e3 * speed:.4f},500,5000,1000];",
+            *(f"  CONST speeddata {name} := [{text},500,5000,1000];" for text, name in names.items()),
             "  PROC main()",
             "    ConfL \\Off;",
             f"    MoveAbsJ [[{','.join(f'{angle:.4f}' for angle in start)}],{none}] \\NoEOffs,v50,fine,tWeld;",
-            *(f"    MoveL {target},vWeld,{zone},tWeld;" for target, zone in zip(targets, zones, strict=True)),
+            *(
+                f"    MoveL {target},{names[text]},{zone},tWeld;"
+                for target, text, zone in zip(targets, texts, zones, strict=True)
+            ),
             "  ENDPROC",
             "ENDMODULE",
             "",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -71,12 +72,11 @@ def read_seam(
 def placed(seam: Seam, place: NDArray[np.float64]) -> Seam:
     """Return a seam whose workpiece has another pose (4, 4) in the base."""
     turn = place[:3, :3]
-    return Seam(
-        seam.positions @ turn.T + place[:3, 3],
-        None if seam.normals is None else seam.normals @ turn.T,
-        None if seam.rotations is None else turn @ seam.rotations,
-        seam.wrenches,
-        seam.zones,
+    return replace(
+        seam,
+        positions=seam.positions @ turn.T + place[:3, 3],
+        normals=None if seam.normals is None else seam.normals @ turn.T,
+        rotations=None if seam.rotations is None else turn @ seam.rotations,
     )
 
 

@@ -107,11 +107,11 @@ def _krl(plan: Plan, name: str) -> str:
     done = plan.correction
     joints = done.motors[0]
     axes = controller_angles(joints) if plan.cell.arm.name in _KUKA else joints
-    return write_krl(name, plan.cell.tool, done.programmed, np.degrees(axes), plan.speed)
+    return write_krl(name, plan.cell.tool, done.programmed, np.degrees(axes), plan.speeds)
 
 
 def _rapid(plan: Plan, name: str, tool_mass: float) -> str:
     done = plan.correction
     configurations = confdata(plan.cell.arm, done.motors)
     start = np.degrees(done.motors[0])
-    return write_rapid(name, plan.cell.tool, tool_mass, done.programmed, configurations, start, plan.speed)
+    return write_rapid(name, plan.cell.tool, tool_mass, done.programmed, configurations, start, plan.speeds)

@@ -35,6 +35,8 @@ class Seam:
         That the tool exerts on the workpiece, in the tool's axes with x ahead [N, Nm]; None where the input has none.
     zones : tuple of str
         Name of the zone of each point; empty where there are none.
+    feeds, spindle_speeds : array of shape (n,) or None
+        Speed of the tool [m/s] and of its spindle [turns/s] at each point; None where the input has none.
     """
 
     positions: NDArray[np.float64]
@@ -42,6 +44,8 @@ class Seam:
     rotations: NDArray[np.float64] | None = None
     wrenches: NDArray[np.float64] | None = None
     zones: tuple[str, ...] = field(default=())
+    feeds: NDArray[np.float64] | None = None
+    spindle_speeds: NDArray[np.float64] | None = None
 
     @property
     def distances(self) -> NDArray[np.float64]:
@@ -135,6 +139,8 @@ def resampled(seam: Seam, count: int) -> Seam:
     def along(values: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
         if values is None:
             return None
+        if values.ndim == 1:
+            return np.interp(at, distances, values)
         return np.stack([np.interp(at, distances, column) for column in values.T], axis=1)
 
     positions, normals = along(seam.positions), along(seam.normals)
@@ -147,7 +153,9 @@ def resampled(seam: Seam, count: int) -> Seam:
 
         rotations = Slerp(distances, Rotation.from_matrix(seam.rotations))(at).as_matrix()
     zones = tuple(seam.zones[index] for index in nearest) if seam.zones else ()
-    return Seam(positions, normals, rotations, along(seam.wrenches), zones)
+    return Seam(
+        positions, normals, rotations, along(seam.wrenches), zones, along(seam.feeds), along(seam.spindle_speeds)
+    )
 
 
 def _surface_axes(seam: Seam, normals: NDArray[np.float64]) -> NDArray[np.float64]:

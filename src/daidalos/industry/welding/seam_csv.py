@@ -11,6 +11,8 @@ from daidalos.common.documents import DocumentError
 from daidalos.industry.columns import read_columns
 from daidalos.industry.welding.seam import Seam
 
+PROCESS_COLUMNS = {"feed_mm_min": 60e3, "spindle_rpm": 60.0}
+"""Columns of feed and spindle speed, with how many of their units are 1 m/s or one turn a second."""
 WRENCH_COLUMNS = ("fx", "fy", "fz", "mx", "my", "mz")
 _GROUPS = {
     "positions": ("x", "y", "z"),
@@ -18,7 +20,7 @@ _GROUPS = {
     "quaternions": ("qx", "qy", "qz", "qw"),
     "wrenches": WRENCH_COLUMNS,
 }
-_KNOWN = (*(name for group in _GROUPS.values() for name in group), "x_mm", "y_mm", "z_mm", "zone")
+_KNOWN = (*(name for group in _GROUPS.values() for name in group), "x_mm", "y_mm", "z_mm", "zone", *PROCESS_COLUMNS)
 
 
 def read_seam_csv(path: Path) -> Seam:
@@ -26,7 +28,7 @@ def read_seam_csv(path: Path) -> Seam:
 
     The first line names the columns: ``x, y, z`` in metres or ``x_mm, y_mm, z_mm``; ``nx, ny, nz`` or
     ``qx, qy, qz, qw`` where they are known, else the normal is z of the base; ``fx, fy, fz, mx, my, mz`` in N and Nm;
-    ``zone``.
+    ``zone``; ``feed_mm_min`` and ``spindle_rpm``.
 
     Raises
     ------
@@ -52,7 +54,30 @@ def read_seam_csv(path: Path) -> Seam:
         normals = np.tile([0.0, 0.0, 1.0], (len(positions), 1))
     else:
         normals = _unit(normals, "normal", lines, path)
-    return Seam(factor * positions, None if rotations is not None else normals, rotations, groups["wrenches"], zones)
+    process = {name: _positive(columns, name, lines, path) for name in PROCESS_COLUMNS}
+    return Seam(
+        factor * positions,
+        None if rotations is not None else normals,
+        rotations,
+        groups["wrenches"],
+        zones,
+        process["feed_mm_min"],
+        process["spindle_rpm"],
+    )
+
+
+def _positive(
+    columns: dict[str, NDArray[np.float64]], name: str, lines: list[int], path: Path
+) -> NDArray[np.float64] | None:
+    """Return a column of the process in m/s or turns a second; None where there is none."""
+    values = columns.get(name)
+    if values is None:
+        return None
+    wrong = values <= 0.0
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise DocumentError(f"{name} is {values[row]:g}, but must be greater than 0", str(path), lines[row])
+    return values / PROCESS_COLUMNS[name]
 
 
 def _group(

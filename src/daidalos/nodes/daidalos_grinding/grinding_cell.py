@@ -173,6 +173,8 @@ class GrindingCell(Node):
         self._cylinder.publish(joint_message(["cylinder"], header, [sample.piston], effort=[area * sample.pressure]))
         self._spindle.publish(joint_message(["spindle"], header, [0.0], [sample.speed], [sample.torque]))
         self._wear.publish(Float64(data=sample.wear))
+        if process.phase is Phase.DONE:
+            return
         if self._arm.get_subscription_count():
             self._arm.publish(joint_message(_JOINTS, self._header(""), self._arm_joints(process).tolist()))
         if self._disc.get_subscription_count():

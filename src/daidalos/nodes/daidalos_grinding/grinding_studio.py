@@ -18,4 +18,5 @@ def main() -> int:
     plots = read_plotjuggler(_SHARE / "plotjuggler" / "grinding.xml")
     view = read_rviz(_SHARE / "rviz" / "grinding.rviz")
     # Each file would be saved to as itself; the page saves this arrangement as a new one.
-    return run_studio("grinding_studio", "", arguments, replace(view, tabs=plots.tabs, span=plots.span, source=""))
+    arrangement = replace(view, tabs=plots.tabs, span=plots.span, source="")
+    return run_studio("grinding_studio", "scene", arguments, arrangement, layout="grinding")

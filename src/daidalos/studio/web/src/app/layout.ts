@@ -24,6 +24,8 @@ import { forget, isRecord, read, write } from "./stored";
 import type { Studio } from "./studio";
 
 const KEY = "layout";
+/** Share of the 3-D view's width that plots beside it get. */
+const BESIDE_SHARE = 0.4;
 const THEME = { name: "daidalos", className: "dockview-theme-daidalos", gap: 6 };
 const DISPLAYS_NARROW_PX = 250;
 const IMAGE_PX = 300;
@@ -207,14 +209,15 @@ export class Layout {
     if (beside !== undefined && width !== undefined) {
       const direction = this.room === "phone" ? "within" : "left";
       const position = { referencePanel: id, direction } as const;
-      const added = this.dock.addPanel({ id: beside, component: beside, title: panelType(beside).title, position });
-      if (direction === "left") {
-        added.api.setSize({ width });
-      }
+      this.dock.addPanel({ id: beside, component: beside, title: panelType(beside).title, position });
       main.api.setActive();
     }
     if (this.studio.arrangement) {
       this.arrangeAsAsked(this.studio.arrangement, main);
+    }
+    if (beside !== undefined && this.room !== "phone") {
+      // Last, since plots beside the panel take their room from all others.
+      this.dock.getPanel(beside)?.api.setSize({ width: width as number });
     }
   }
 
@@ -280,13 +283,19 @@ export class Layout {
     }
   }
 
-  /** What a file of PlotJuggler has beside its first panel. */
-  private arrangeAsAsked({ tabs, span }: Arrangement, main: IDockviewPanel): void {
+  /** What a file of PlotJuggler has in place of the first panel; beside it where that shows displays of the same layout. */
+  private arrangeAsAsked({ tabs, span, displays }: Arrangement, main: IDockviewPanel): void {
     const [first, ...others] = tabs;
     if (first) {
       const plots = new PlotPlaces(this.dock, span);
-      const panel = plots.add(first[0], firstPlot(first[1]), { referencePanel: main.id, direction: "within" });
-      this.dock.removePanel(main);
+      const direction = displays && this.room !== "phone" ? "right" : "within";
+      const width = main.api.width;
+      const panel = plots.add(first[0], firstPlot(first[1]), { referencePanel: main.id, direction });
+      if (displays) {
+        panel.api.setSize({ width: direction === "right" ? BESIDE_SHARE * width : width });
+      } else {
+        this.dock.removePanel(main);
+      }
       others.forEach(([title, content]) => {
         for (const plot of allPlots(content)) {
           plots.add(title, plot, { referencePanel: panel.id, direction: "within" }, true);
