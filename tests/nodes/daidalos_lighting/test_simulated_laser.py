@@ -83,6 +83,7 @@ def test_the_picture_lies_on_what_the_beam_meets(
     found = corners(on_part)
     assert np.hypot(found[:, 0] - 0.2, found[:, 1] - 0.1) == pytest.approx(np.full(len(found), 0.05), abs=1e-3)
     assert (on_part.colors[0].r, on_part.colors[0].g) == (1.0, 0.0)
+    assert on_part.color.a == on_part.colors[0].a == 1.0
     flange.position.x = 0.2 + 0.12  # its edge passes through the ring: a part of it lies on the table
     split = corners(picture(publish_and(lambda one: {0.83, 0.75} <= {round(at.z, 2) for at in one.points})))
     assert np.linalg.norm(split[1::2] - split[::2], axis=1).max() < 0.04  # no line crosses the edge, 0.08 m high

@@ -30,10 +30,10 @@ class LightVerb:
         point.add_argument("--duration", type=_seconds, metavar="S", help="end after this time instead of by Ctrl-C")
         point.set_defaults(_command=_point)
         demo = commands.add_parser("demo", help="a simulated head over a table, in the simulator and the studio")
-        demo.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
+        demo.add_argument("--port", type=_port, default=8765, metavar="N", help="of the studio (default: 8765)")
         demo.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
         demo.add_argument(
-            "--artnet-port", type=int, metavar="N", help="of the simulated head (default: 6454, or a free one)"
+            "--artnet-port", type=_port, metavar="N", help="of the simulated head (default: 6454, or a free one)"
         )
         demo.set_defaults(_command=_demo)
         run = commands.add_parser("run", help="take points and channels over MQTT until Ctrl-C, then go dark")
@@ -41,7 +41,7 @@ class LightVerb:
         run.add_argument(
             "--broker", metavar="URL", help="mqtt://user:password@host:1883 or mqtts:// (default: embedded)"
         )
-        run.add_argument("--port", type=int, metavar="N", help="port of the embedded broker (default: 1883)")
+        run.add_argument("--port", type=_port, metavar="N", help="port of the embedded broker (default: 1883)")
         run.set_defaults(_command=_run)
         calibrate = commands.add_parser(
             "calibrate", help="find a head's pose by aiming at known points with the arrow keys"
@@ -238,6 +238,13 @@ def _seconds(text: str) -> float:
     value = float(text)
     if not (math.isfinite(value) and value > 0):
         raise argparse.ArgumentTypeError("must be above 0")
+    return value
+
+
+def _port(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= 65535:
+        raise argparse.ArgumentTypeError("must be from 1 to 65535")
     return value
 
 

@@ -55,7 +55,7 @@ def read_fixture(name: str, mode: str = "", folder: Path | None = None) -> Fixtu
     elif "." in name or "/" in name:
         path = (folder or Path()) / name
     else:
-        raise FixtureError(f"'{name}' is no built-in fixture{hint(name, built_in)}; or write the path of a file")
+        raise FixtureError(f"'{name}' is no built-in fixture and no path of a file{hint(name, built_in)}")
     text = read_text(path)
     if path.suffix == ".json":
         return fixture_from_json(parse_json(text, str(path)), mode, str(path))

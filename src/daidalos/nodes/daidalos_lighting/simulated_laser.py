@@ -89,6 +89,7 @@ class SimulatedLaser(Node):
         marker.header.frame_id = "world"
         marker.pose.orientation.w = 1.0
         marker.scale.x = self._settings.line_width
+        marker.color = ColorRGBA(r=1.0, g=1.0, b=1.0, a=1.0)  # its alpha is that of all lines
         frame = self._frame
         if frame is not None and len(frame.places) > 1:
             starts, ends, colors = self._lines(frame)

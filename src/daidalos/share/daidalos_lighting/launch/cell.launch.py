@@ -85,6 +85,7 @@ def generate_launch_description():
                 parameters=[studio],
                 condition=IfCondition(LaunchConfiguration("studio")),
                 output="screen",
+                on_exit=[Shutdown()],
             ),
         ]
     )
