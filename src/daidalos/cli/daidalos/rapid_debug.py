@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daidalos.cli.daidalos.rapid_loading import load_tasks
-from daidalos.cli.daidalos.rapid_run import Pace
 from daidalos.common.errors import UserError
+from daidalos.industry.rapid.runtime.pacing import Pace
 
 if TYPE_CHECKING:
     from daidalos.industry.rapid.runtime.task import Task

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 import threading
-import time
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from daidalos.cli.daidalos.launching import INTERRUPTED
 from daidalos.cli.daidalos.rapid_loading import load_task, load_tasks
 from daidalos.cli.daidalos.rapid_target import announcement
 from daidalos.common.errors import UserError
+from daidalos.industry.rapid.runtime.pacing import Pace
 
 if TYPE_CHECKING:
     from daidalos.industry.rapid.runtime.announced_arm import Announcement
@@ -180,22 +180,6 @@ def _save(task: Task) -> None:
 
     for path in save_persistents(task):
         print(f"saved {path}", file=sys.stderr)
-
-
-class Pace:
-    """Pace of real time: a call returns when as much of it has passed as the robot's time has."""
-
-    def __init__(self) -> None:
-        self._due = time.monotonic()
-
-    def __call__(self, seconds: float) -> None:
-        """Wait until real time has caught up."""
-        self._due += seconds
-        now = time.monotonic()
-        if now < self._due:
-            time.sleep(self._due - now)
-        else:
-            self._due = now
 
 
 class Watch:

@@ -44,7 +44,7 @@ def serve_program(args: argparse.Namespace) -> int:
     import ssl
 
     from daidalos.cli.daidalos.rapid_loading import load_task
-    from daidalos.cli.daidalos.rapid_run import Pace
+    from daidalos.industry.rapid.runtime.pacing import Pace
     from daidalos.industry.rws.access import Access
     from daidalos.industry.rws.certificate import context_of, self_signed_context
     from daidalos.industry.rws.controller import VirtualController

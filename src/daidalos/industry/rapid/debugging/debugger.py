@@ -66,6 +66,8 @@ class Debugger:
     breakpoints: dict[str, dict[int, Callable[[], bool] | None]] = field(default_factory=dict)
     stops_at_errors: bool = False
     is_stopped: bool = False
+    place: Place = ("", 0)
+    """File and line of the program pointer."""
     _command: Command = "in"
     _depth: int = 0
     _start: int = 0
@@ -90,6 +92,10 @@ class Debugger:
     def pause(self) -> None:
         """Stop the task at its next line."""
         self._asks_pause = True
+
+    def unpause(self) -> None:
+        """Forget that the task is to stop at its next line."""
+        self._asks_pause = False
 
     def resume(self, command: Command) -> None:
         """Continue a stopped task: to the next breakpoint, line, line of the same routine, or out of it, or end."""
@@ -163,7 +169,7 @@ class Debugger:
             raise ProgramEnd("the debugger")
         if self._places.get(frame) == place:
             return
-        self._places[frame] = place
+        self._places[frame] = self.place = place
         reason, text = self._reason_at(frame, place), ""
         while reason:
             self._stop(frame, reason, text)
@@ -176,7 +182,7 @@ class Debugger:
             else:
                 text = ""
             self._jump = None
-            self._places[frame] = self.task.place_at(frame.f_lineno)
+            self._places[frame] = self.place = self.task.place_at(frame.f_lineno)
             reason = "goto"
 
     def _reason_at(self, frame: FrameType, place: Place) -> str:

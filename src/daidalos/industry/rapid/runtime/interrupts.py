@@ -44,6 +44,10 @@ class Interrupts:
         self.is_enabled = True
         task.signals.listeners.append(self._on_signal)
 
+    def close(self) -> None:
+        """Take no more signals."""
+        self._task.signals.listeners.remove(self._on_signal)
+
     def connect(self, trap: Callable[[], Any]) -> float:
         """Return the number of a new interrupt."""
         number = float(max(self._by_number, default=0.0) + 1)

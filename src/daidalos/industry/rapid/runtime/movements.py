@@ -77,10 +77,10 @@ def _scaled(task: Task, speed: list[float]) -> list[float]:
     return [min(speed[0] * share, greatest), *(one * share for one in speed[1:])]
 
 
-def set_manual(task: Task) -> None:
-    """Put a task into manual mode with reduced speed: the tool is no faster than 250 mm/s."""
-    task.settings["is_manual"] = True
-    _set_motion(task, greatest_speed=MANUAL_SPEED)
+def set_manual(task: Task, is_manual: bool = True) -> None:
+    """Put a task into manual mode, in which the tool is no faster than 250 mm/s, or into automatic mode."""
+    task.settings["is_manual"] = is_manual
+    _set_motion(task, greatest_speed=MANUAL_SPEED if is_manual else math.inf)
 
 
 def motion_settings(task: Task) -> MotionSettings:

@@ -166,6 +166,15 @@ class Task:
                 resource.close()
             self.resources.clear()
 
+    def reset(self) -> None:
+        """Give variables their initial values, and forget interrupts; persistents keep theirs, as on a controller."""
+        kept = [(global_name(owned), value) for owned, _, value in self.persistents()]
+        self._load_data()
+        for key, value in kept:
+            self._namespace[key] = value
+        self.interrupts.close()
+        self.interrupts = Interrupts(self)
+
     def _run(self, procedure: Callable[[], Any]) -> Outcome:
         try:
             if self.tracer is not None:

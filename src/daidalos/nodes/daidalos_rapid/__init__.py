@@ -1,0 +1,1 @@
+"""Nodes of robots that run programs in RAPID."""
