@@ -11,13 +11,13 @@ from . import pages
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
 
 
-def test_page(tmp_path: Path) -> None:
+def test_page(tmp_path: Path, domain: int) -> None:
     pytest.importorskip("termios")
     from terminals import Terminal, environment
 
     from .reader import Reader
 
-    reader = Reader(tmp_path, lambda folder: Terminal(environment(1, tmp_path), folder))
+    reader = Reader(tmp_path, lambda folder: Terminal(environment(domain, tmp_path), folder))
     reader.follow(pages.read(REPOSITORY / "docs" / "arms.md"))
     reader.close()
     assert not reader.mismatches, "\n".join(["", *reader.mismatches])

@@ -23,7 +23,9 @@ from daidalos.industry.egm.messages import (
 )
 from daidalos.industry.egm.wire import decode, encode
 from daidalos.industry.motion.kinematics import forward
+from daidalos.industry.motion.redundant_kinematics import forward_of
 from daidalos.industry.robots import ARMS
+from daidalos.industry.robots.yumi import HOME_DEG, YUMI_ARM
 
 ARM = ARMS["irb120"]
 
@@ -146,3 +148,35 @@ def test_a_controller_waits_for_the_first_guidance_where_it_is_told_to():
     for _ in range(7):
         controller.step()
     assert controller.stopped == "no guidance for 0.02 s"
+
+
+def test_the_seventh_axis_of_yumi_is_an_external_one():
+    controller = GuidedController(YUMI_ARM)
+    goal = [5, -125, 32, 4, 42, -3, 130]
+    for number in range(1, 60):
+        asked = EgmPlanned(joints=EgmJoints(tuple(goal[:6])), externalJoints=EgmJoints((goal[6],)))
+        assert controller.take(guidance(number, asked)) == ""
+        controller.step()
+    state = decode(EgmRobot, controller.message()).feedBack
+    np.testing.assert_allclose([*state.joints.joints, *state.externalJoints.joints], goal, atol=1e-9)
+    from_base = np.radians([goal[k] for k in (0, 1, 6, 2, 3, 4, 5)])
+    position = (state.cartesian.pos.x, state.cartesian.pos.y, state.cartesian.pos.z)
+    np.testing.assert_allclose(position, 1e3 * forward_of(YUMI_ARM, from_base)[0][:3, 3], atol=1e-9)
+    assert controller.take(joints(100, *goal[:6])) == "6 joints are given, but the robot has 7"
+
+
+def test_yumi_follows_a_pose_with_its_arm_angle():
+    controller = GuidedController(YUMI_ARM, settings=EgmSettings("pose"))
+    order = YUMI_ARM.controller_order
+    pose, arm_angle = forward_of(YUMI_ARM, np.radians(HOME_DEG["left"]))
+    pose[0, 3] += 0.03
+    x, y, z, w = Pose.from_matrix(pose).orientation
+    asked = EgmPose(EgmCartesian(*(1e3 * pose[:3, 3])), EgmQuaternion(w, x, y, z))
+    for number in range(1, 60):
+        assert controller.take(guidance(number, EgmPlanned(cartesian=asked))) == ""
+        controller.step()
+    angles = np.empty(7)
+    angles[order] = controller.joints
+    found, found_angle = forward_of(YUMI_ARM, angles)
+    np.testing.assert_allclose(found, pose, atol=1e-8)
+    assert found_angle == pytest.approx(float(arm_angle), abs=1e-8)

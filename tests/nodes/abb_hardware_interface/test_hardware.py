@@ -1,5 +1,7 @@
 """The hardware of ros2_control on a simulated controller: it follows commands, and says when the controller is lost."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -82,10 +84,10 @@ def test_a_silent_controller_is_an_error(cell):
     hardware = cell[0]
     hardware.activate()
     cycle(cell)
-    for _ in range(24):
-        hardware.read(0, PERIOD)
-    with pytest.raises(HardwareError, match=r"'abb': no message of the controller for 0\.106 s"):
-        hardware.read(0, 0.01)
+    hardware.read(0, 0.5)
+    hardware.read(0, 0.5)
+    with pytest.raises(HardwareError, match=r"'abb': no message of the controller for 1\.1 s"):
+        hardware.read(0, 0.1)
 
 
 def test_a_controller_that_has_stopped_is_an_error(cell):
@@ -109,3 +111,37 @@ def test_a_controller_that_never_sends_is_one_line(info, monkeypatch):
     hardware = hardware_class(info)(info)
     with pytest.raises(HardwareError, match=r"no message of a controller came within 0\.05 s"):
         hardware.configure()
+
+
+def test_two_units_of_a_multimove_system_are_one_hardware(info, monkeypatch):
+    controllers = [GuidedController(ARMS["irb120"], np.radians([angle, 0, 0, 0, 30, 0])) for angle in (10, -10)]
+    servers = []
+
+    class Client(egm_client.EgmClient):
+        def __init__(self, address, port, peer):
+            super().__init__(address, 0, peer)
+            servers.append(EgmControllerServer(controllers[len(servers)], "127.0.0.1", self.port))
+            servers[-1].cycle()
+
+    monkeypatch.setattr("daidalos.nodes.abb_hardware_interface._hardware.EgmClient", Client)
+    joints = info.joints
+    others = [replace(joint, name=f"other_{joint.name}") for joint in joints]
+    ports = {"rob1egm_port": "6511", "rob2egm_port": "6512"}
+    both = replace(info, components=(*joints, *others), parameters=ports)
+    hardware = hardware_class(both)(both)
+    hardware.configure()
+    hardware.activate()
+    assert hardware.states["joint_1/position"] == pytest.approx(np.radians(10))
+    assert hardware.states["other_joint_1/position"] == pytest.approx(np.radians(-10))
+    for _ in range(30):
+        hardware.commands["other_joint_1/position"] = 0.0
+        hardware.write(0, PERIOD)
+        for server in servers:
+            server.cycle()
+        hardware.read(0, PERIOD)
+    assert np.degrees(controllers[0].joints[0]) == pytest.approx(10)
+    assert controllers[1].joints[0] == pytest.approx(0.0, abs=1e-9)
+    hardware.cleanup()
+    for server in servers:
+        with server:
+            pass

@@ -45,9 +45,9 @@ def _serve(args: argparse.Namespace) -> None:
 
     from daidalos.industry.egm.controller import EgmSettings, GuidedController
     from daidalos.industry.egm.controller_server import EgmControllerServer
-    from daidalos.industry.robots import arm_named
+    from daidalos.industry.robots import REDUNDANT_ARMS, arm_named
 
-    arm = arm_named(args.arm)
+    arm = REDUNDANT_ARMS.get(args.arm.lower()) or arm_named(args.arm)
     settings = EgmSettings(args.mode, args.timeout, args.wait)
     controller = GuidedController(arm, settings=settings)
     left = args.time

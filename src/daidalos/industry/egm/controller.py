@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.pose3 import Pose, quaternion_from_rpy
+from daidalos.industry.egm.bodies import AXES, body_of
 from daidalos.industry.egm.messages import (
     EgmCartesian,
     EgmClock,
@@ -32,10 +33,9 @@ from daidalos.industry.egm.messages import (
     Rapid,
 )
 from daidalos.industry.egm.wire import WireError, decode, encode
-from daidalos.industry.motion.branches import joints_at
 from daidalos.industry.motion.faults import MotionFault
-from daidalos.industry.motion.kinematics import forward, within_limits
 from daidalos.industry.robots import Arm
+from daidalos.industry.robots.redundant import RedundantArm
 
 Array = NDArray[np.float64]
 
@@ -73,16 +73,16 @@ class GuidedController:
 
     Parameters
     ----------
-    arm : Arm
+    arm : Arm or RedundantArm
         Its robot.
-    joints : array of shape (6,), optional
-        Angles at the beginning [rad]; the arm's forearm ahead and its tool down without them.
+    joints : array of shape (n,), optional
+        Angles at the beginning, in the controller's order [rad]; without them those with which the arm begins.
     settings : EgmSettings
 
     Attributes
     ----------
-    joints : array of shape (6,)
-        Present angles [rad].
+    joints : array of shape (n,)
+        Present angles, in the controller's order [rad].
     stopped : str
         Why the robot has stopped; empty while it is guided.
     refused : int
@@ -91,10 +91,12 @@ class GuidedController:
         Why the last of them did not.
     """
 
-    def __init__(self, arm: Arm, joints: Array | None = None, settings: EgmSettings | None = None) -> None:
-        self.arm = arm
+    def __init__(
+        self, arm: Arm | RedundantArm, joints: Array | None = None, settings: EgmSettings | None = None
+    ) -> None:
+        self._body = body_of(arm)
         self.settings = settings or EgmSettings()
-        beginning = np.radians([0.0, 0.0, 0.0, 0.0, 30.0, 0.0]) if joints is None else np.asarray(joints, dtype=float)
+        beginning = self._body.home if joints is None else np.asarray(joints, dtype=np.float64)
         self.joints: Array = beginning.copy()
         self.stopped = ""
         self.refused = 0
@@ -116,8 +118,8 @@ class GuidedController:
         return encode(
             EgmRobot(
                 header=EgmHeader(self._cycles, round(1e3 * self.time) & 0xFFFFFFFF, MessageType.DATA),
-                feedBack=EgmFeedBack(*self._position(self.joints), EgmJoints(), clock),
-                planned=EgmPlanned(*self._position(self._goal), EgmJoints(), clock),
+                feedBack=EgmFeedBack(*self._position(self.joints), clock),
+                planned=EgmPlanned(*self._position(self._goal), clock),
                 motorState=EgmState(Motors.ON),
                 mciState=EgmState(state),
                 mciConvergenceMet=bool(np.abs(self._goal - self.joints).max() < _CONVERGED),
@@ -126,11 +128,13 @@ class GuidedController:
             )
         )
 
-    def _position(self, joints: Array) -> tuple[EgmJoints, EgmPose]:
-        pose = Pose.from_matrix(forward(self.arm, joints))
+    def _position(self, joints: Array) -> tuple[EgmJoints, EgmPose, EgmJoints]:
+        pose = Pose.from_matrix(self._body.pose(joints))
         x, y, z, w = pose.orientation
         place = EgmCartesian(*(1e3 * one for one in pose.position))
-        return EgmJoints(tuple(np.degrees(joints).tolist())), EgmPose(place, EgmQuaternion(w, x, y, z))
+        degrees = np.degrees(joints).tolist()
+        own, external = EgmJoints(tuple(degrees[:AXES])), EgmJoints(tuple(degrees[AXES:]))
+        return own, EgmPose(place, EgmQuaternion(w, x, y, z)), external
 
     def take(self, data: bytes) -> str:
         """Take guidance, and return why it does not count; empty where it does."""
@@ -166,7 +170,8 @@ class GuidedController:
         if self.settings.mode == "joint":
             if planned.joints is None:
                 return "joints are guided, but it has none", None
-            goal = np.radians(planned.joints.joints)
+            external = planned.externalJoints or EgmJoints()
+            goal = np.radians([*planned.joints.joints, *external.joints])
             if goal.shape != self.joints.shape:
                 return f"{len(goal)} joints are given, but the robot has {len(self.joints)}", None
             if not np.isfinite(goal).all():
@@ -178,11 +183,11 @@ class GuidedController:
             if pose is None:
                 return "the pose is incomplete or not finite", None
             try:
-                goal = joints_at(self.arm, pose, None, self.joints)
+                goal = self._body.joints_at(pose, self._goal)
             except MotionFault as fault:
                 self._stop(str(fault))
                 return "", None
-        if not within_limits(self.arm, goal):
+        if not ((goal >= self._body.limits[:, 0]) & (goal <= self._body.limits[:, 1])).all():
             self._stop("joint out of range")
             return "", None
         return "", goal
@@ -198,7 +203,7 @@ class GuidedController:
         silence = 0.0 if is_waiting else self.time - self._latest_time
         if not self.stopped and silence > self.settings.communication_timeout:
             self._stop(f"no guidance for {self.settings.communication_timeout:g} s")
-        speeds = np.minimum(self.arm.speeds, math.radians(self.settings.max_speed_deviation))
+        speeds = np.minimum(self._body.speeds, math.radians(self.settings.max_speed_deviation))
         self.joints = self.joints + np.clip(self._goal - self.joints, -speeds * CYCLE, speeds * CYCLE)
 
 
