@@ -31,6 +31,7 @@ HARDWARE: Kind[Hardware] = Kind(
         "daidalos.nodes.controller_manager",
         "daidalos.nodes.daidalos_lighting",
         "daidalos.nodes.abb_hardware_interface",
+        "daidalos.nodes.kuka_kss_rsi_driver",
     ),
 )
 KINDS = (CONTROLLERS, HARDWARE)

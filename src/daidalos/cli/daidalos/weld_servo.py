@@ -66,6 +66,9 @@ def add_servo(commands: Any) -> None:
     robot_parser.add_argument("--length", type=finite, default=100.0, metavar="MM", help="of the seam (default: 100)")
     robot_parser.add_argument("--max-lost", type=int, default=10, metavar="N", help="answers in a row (default: 10)")
     robot_parser.add_argument("--wait", type=finite, default=60.0, metavar="S", help="for an answer (default: 60)")
+    robot_parser.add_argument(
+        "--stand", type=finite, metavar="S", help="stand so long, its axes corrected by ros2_control, instead of a seam"
+    )
     robot_parser.add_argument("--fast", action="store_true", help="IPO_FAST: cycles of 4 ms")
     robot_parser.add_argument("--json", action="store_true", help="print what happened as JSON")
     robot_parser.set_defaults(_command=run_robot)

@@ -72,7 +72,7 @@ def run_robot(args: argparse.Namespace) -> int:
 
     from daidalos.industry.rsi.controller import IPO, IPO_FAST, ControllerSettings, SimulatedController
     from daidalos.industry.rsi.controller_server import ControllerServer
-    from daidalos.industry.servoing.servo_cell import RUN_OUT, START, straight_program
+    from daidalos.industry.servoing.servo_cell import RUN_OUT, STANDING, START, straight_program
 
     for option in ("speed", "length", "wait"):
         _positive(option, getattr(args, option))
@@ -81,17 +81,26 @@ def run_robot(args: argparse.Namespace) -> int:
     address, port = _address(args.to, "--to")
     speed, length = args.speed / 60e3, 1e-3 * args.length
     settings = ControllerSettings(cycle=IPO_FAST if args.fast else IPO, max_lost=args.max_lost)
-    controller = SimulatedController(_configuration(args.rsi), straight_program(speed), settings)
+    if args.stand is None:
+        duration = (START + length + RUN_OUT) / speed
+        controller = SimulatedController(_configuration(args.rsi), straight_program(speed), settings)
+    else:
+        _positive("stand", args.stand)
+        duration = args.stand
+        settings = replace(settings, relative=False, axis_limit=180.0)
+        configuration = _configuration(args.rsi or _CONFIGURATION.with_name("joints.xml"))
+        controller = SimulatedController(configuration, lambda _: np.zeros(6), settings, STANDING)
     with ControllerServer(controller, address, port) as server:
         server.wait_for_partner(args.wait)
-        server.run((START + length + RUN_OUT) / speed)
+        server.run(duration)
         figures = {
             "ended": controller.stopped or "the program's end was reached",
             "cycles": round(controller.time / settings.cycle),
             "lost": controller.total_lost,
             "refused": server.refused,
             "last_refusal": server.last_refusal,
-            "correction_mm": [round(float(one), 4) for one in np.asarray(controller.correction)[:3]],
+            "correction_mm": [round(float(one), 4) for one in controller.correction[:3]],
+            "axes_deg": [round(float(one), 4) for one in controller.axes],
         }
     print(json.dumps(figures, indent=1) if args.json else "\n".join(f"{key}: {one}" for key, one in figures.items()))
     return 1 if controller.stopped else 0

@@ -24,6 +24,8 @@ START = 0.045
 """Length that the robot moves before the seam begins [m]."""
 RUN_OUT = 0.005
 """Length that it moves on after the seam's end [m]."""
+STANDING = np.array([0.0, -90.0, 90.0, 0.0, 90.0, 0.0])
+"""Angles of the axes of a robot that stands [deg]."""
 ORIGIN = np.array([2300.0, 0.0, 900.0, 0.0, 0.0, 180.0])
 """Pose of the tool at the beginning of the seam [mm, deg]."""
 

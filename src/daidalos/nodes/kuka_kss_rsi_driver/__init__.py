@@ -1,0 +1,1 @@
+"""Hardware of KUKA controllers for ros2_control."""
