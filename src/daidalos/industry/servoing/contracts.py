@@ -35,7 +35,7 @@ class LoopSetup:
     speed: float = 5e-3
     max_step: float = 0.06e-3
     max_correction: float = 5e-3
-    lead: float = 0.2
+    lead: float = 0.23
 
 
 @dataclass(frozen=True)
