@@ -66,6 +66,13 @@ TRAJECTORY_CRITICS: Kind[contracts.TrajectoryCritic] = Kind(
     "gives trajectories of the DWB controller a cost; named in its `critics`",
     partial(classes_in, "daidalos.navigation.controllers.dwb.critics"),
 )
+PATH_HANDLERS: Kind[contracts.PathHandler] = Kind(
+    "path_handler",
+    "daidalos.path_handlers",
+    f"{_CONTRACTS}:PathHandler",
+    "chooses how much of a path a controller sees; named in `path_handler_plugins` of the controller server",
+    partial(classes_in, "daidalos.navigation.controllers.path_handlers"),
+)
 GOAL_CHECKERS: Kind[contracts.GoalChecker] = Kind(
     "goal_checker",
     "daidalos.goal_checkers",
@@ -140,6 +147,7 @@ KINDS = (
     CRITICS,
     TRAJECTORY_VALIDATORS,
     TRAJECTORY_CRITICS,
+    PATH_HANDLERS,
     GOAL_CHECKERS,
     PROGRESS_CHECKERS,
     BEHAVIORS,

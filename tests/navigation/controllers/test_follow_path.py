@@ -1,11 +1,17 @@
 """Following a path: goals, progress, failure tolerance."""
 
+import math
+
 import numpy as np
 import pytest
 
 from daidalos.navigation.contracts import Controller
 from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.controllers.goal_checkers.simple_goal_checker import SimpleGoalChecker
+from daidalos.navigation.controllers.path_handlers.feasible_path_handler import (
+    FeasiblePathHandler,
+    FeasiblePathHandlerParameters,
+)
 from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import SimpleProgressChecker
 from daidalos.navigation.errors import FailedToMakeProgress, InvalidPath, NoValidControl, PatienceExceeded
 
@@ -130,3 +136,60 @@ def test_a_path_of_the_map_is_followed_in_the_odometrys_frame(follow):
     frame = np.array([0.0, 1.0, np.pi / 2])
     follow.step(at(0.0, 2.0, np.pi / 2), REST, GROUND, 0.0, plan_frame=frame)
     assert np.allclose(follow.controller.seen.goal, [0.0, 4.0, np.pi / 2])
+
+
+def square_corner():
+    """Ahead for 2 m, a turn in place by 90 degrees, and 2 m to the left."""
+    along = np.arange(0.0, 2.01, 0.1)
+    out = np.stack([along, 0.0 * along, 0.0 * along], axis=-1)
+    turn = np.array([[2.0, 0.0, yaw] for yaw in (0.5, 1.0, 0.5 * math.pi)])
+    left = np.stack([2.0 + 0.0 * along, along, np.full(along.size, 0.5 * math.pi)], axis=-1)
+    return np.concatenate([out, turn, left[1:]])
+
+
+def reversal():
+    """Ahead for 2 m and back again."""
+    along = np.arange(0.0, 2.01, 0.1)
+    return np.stack([np.concatenate([along, along[-2::-1]]), np.zeros(41), np.zeros(41)], axis=-1)
+
+
+@pytest.mark.parametrize(
+    ("plan", "changes", "end"),
+    [
+        (square_corner(), {}, (2.0, 0.9, 0.5 * math.pi)),
+        (square_corner(), {"enforce_path_inversion": True}, (2.0, 0.9, 0.5 * math.pi)),
+        (square_corner(), {"enforce_path_rotation": True}, (2.0, 0.0, 0.5 * math.pi)),
+        (square_corner(), {"enforce_path_rotation": True, "minimum_rotation_angle": 2.0}, (2.0, 0.9, 0.5 * math.pi)),
+        (reversal(), {}, (1.0, 0.0, 0.0)),
+        (reversal(), {"enforce_path_inversion": True}, (2.0, 0.0, 0.0)),
+        (reversal(), {"enforce_path_rotation": True}, (1.0, 0.0, 0.0)),
+        (reversal(), {"prune_distance": 0.5}, (1.5, 0.0, 0.0)),
+    ],
+)
+def test_what_the_feasible_path_handler_shows(plan, changes, end):
+    handler = FeasiblePathHandler(FeasiblePathHandlerParameters(**changes))
+    follow = FollowPath(Scripted(), SimpleGoalChecker(), SimpleProgressChecker(), path_handler=handler)
+    follow.start(plan)
+    pose = np.array([1.0, 0.0, 0.0])
+    step = follow.step(pose, np.zeros(3), ground(), 0.0)
+    assert step.path[-1] == pytest.approx(np.array(end), abs=0.11)
+
+
+def test_the_path_goes_on_after_the_turn():
+    handler = FeasiblePathHandler(FeasiblePathHandlerParameters(enforce_path_rotation=True))
+    follow = FollowPath(Scripted(), SimpleGoalChecker(), SimpleProgressChecker(), path_handler=handler)
+    follow.start(square_corner())
+    costmap = ground()
+    ends = [
+        follow.step(np.array(pose), np.zeros(3), costmap, 0.0).path[-1, 1]
+        for pose in ((1.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 0.0, 1.4))
+    ]
+    assert ends[:2] == [0.0, 0.0]
+    assert ends[2] > 1.5
+
+
+def test_a_path_of_one_pose_can_be_refused():
+    handler = FeasiblePathHandler(FeasiblePathHandlerParameters(reject_unit_path=True))
+    follow = FollowPath(Scripted(), SimpleGoalChecker(), SimpleProgressChecker(), path_handler=handler)
+    with pytest.raises(InvalidPath, match="reject_unit_path"):
+        follow.start(np.zeros((1, 3)))

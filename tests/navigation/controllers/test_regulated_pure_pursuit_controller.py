@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from daidalos.navigation.contracts import NavigationContext
-from daidalos.navigation.controllers.path_handler import PathHandler
+from daidalos.navigation.controllers.plan_ahead import PlanAhead
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import (
     RegulatedPurePursuitController,
     RegulatedPurePursuitParameters,
@@ -123,7 +123,7 @@ def test_a_path_behind_is_driven_backwards_where_that_is_allowed():
 def test_a_cusp_is_driven_to_before_the_robot_reverses():
     ahead, back = line((1.0, 0.0)), line((-1.0, 0.0), (1.0, 0.0), heading=0.0)[1:]
     back[:, 2] = 0.0
-    path, controller, handler = np.concatenate([ahead, back]), regulated(allow_reversing=True), PathHandler()
+    path, controller, handler = np.concatenate([ahead, back]), regulated(allow_reversing=True), PlanAhead()
     handler.set_plan(path)
     pose, velocity, farthest = np.zeros(3), np.zeros(3), 0.0
     for _ in range(200):

@@ -153,6 +153,17 @@ def test_rollouts_are_shown(stage: Callable[[dict[str, Any]], Stage]) -> None:
     assert len(best[-1].poses) == 56
 
 
+def test_a_path_handler_chooses_what_the_controller_sees(stage: Callable[[dict[str, Any]], Stage]) -> None:
+    handler = {"plugin": "nav2_controller::FeasiblePathHandler", "prune_distance": 0.4}
+    parameters = changed("/controller_server", path_handler_plugins=["PathHandler"], PathHandler=handler)
+    bench = Bench(stage(parameters)).start()
+    plans = bench.stage.collect(Path, "local_plan")
+    bench.drive_until_moving(straight(1.5))
+    bench.stage.step_until(lambda: bool(plans))
+    first, *_, last = plans[-1].poses
+    assert last.pose.position.x - first.pose.position.x == pytest.approx(0.4, abs=0.06)
+
+
 def test_an_unknown_validator_fails_the_server(stage: Callable[[dict[str, Any]], Stage]) -> None:
     mppi = {"plugin": "nav2_mppi_controller::MPPIController", "TrajectoryValidator": {"plugin": "mppi::Default"}}
     bench = Bench(stage(changed("/controller_server", FollowPath=mppi)))

@@ -11,7 +11,14 @@ The contract of behaviour-tree nodes is in `daidalos.navigation.trees.node`.
 """
 
 from daidalos.navigation.contracts.behaviors import Behavior, BehaviorStep, WaypointTask
-from daidalos.navigation.contracts.control import Candidates, ControlInput, Controller, GoalChecker, ProgressChecker
+from daidalos.navigation.contracts.control import (
+    Candidates,
+    ControlInput,
+    Controller,
+    GoalChecker,
+    PathHandler,
+    ProgressChecker,
+)
 from daidalos.navigation.contracts.critics import Critic, Scene, TrajectoryCritic, TrajectoryScene, TrajectoryValidator
 from daidalos.navigation.contracts.extension import NavigationContext, NavigationExtension
 from daidalos.navigation.contracts.layers import Layer
@@ -32,6 +39,7 @@ __all__ = [
     "NavigationContext",
     "NavigationExtension",
     "Output",
+    "PathHandler",
     "ProgressChecker",
     "Scene",
     "Smoother",

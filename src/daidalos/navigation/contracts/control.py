@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any
@@ -106,6 +107,44 @@ class Candidates:
 
     points: NDArray[np.floating[Any]]
     costs: NDArray[np.floating[Any]]
+
+
+class PathHandler(NavigationExtension):
+    """Choice of how much of a plan the controller sees, in place of the controller's own."""
+
+    @property
+    @abstractmethod
+    def look_ahead(self) -> float:
+        """Length [m] of the path ahead that the controller sees."""
+
+    @property
+    def search_distance(self) -> float:
+        """How far [m] along the plan the robot may have got since the last cycle."""
+        return 1.5
+
+    @property
+    def sees_past_cusps(self) -> bool:
+        """Whether the controller sees what follows a cusp before the robot is there."""
+        return True
+
+    @property
+    def rotation_angle(self) -> float:
+        """Angle [rad] from which on the robot has to make a turn in place before it sees what follows it."""
+        return math.inf
+
+    @property
+    def tolerances(self) -> tuple[float, float]:
+        """How near [m], [rad] to a cusp or turn the robot has to come."""
+        return 0.2, 0.4
+
+    def check(self, plan: Array) -> None:
+        """Check a plan (n, 3).
+
+        Raises
+        ------
+        InvalidPath
+            It cannot be followed.
+        """
 
 
 class GoalChecker(NavigationExtension):

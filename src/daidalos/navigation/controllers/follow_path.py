@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.arrays import Array
-from daidalos.navigation.contracts import ControlInput, Controller, GoalChecker, ProgressChecker
-from daidalos.navigation.controllers.path_handler import PathHandler
+from daidalos.navigation.contracts import ControlInput, Controller, GoalChecker, PathHandler, ProgressChecker
+from daidalos.navigation.controllers.plan_ahead import PlanAhead
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.errors import (
     ControllerError,
@@ -57,6 +57,8 @@ class FollowPath:
         Says when the robot is stuck.
     failure_tolerance : float
         How long [s] the controller may fail before the task does; -1 for ever, 0 not at all.
+    path_handler : PathHandler, optional
+        Says how much of the path the controller sees; the controller itself does where left out.
     """
 
     def __init__(
@@ -65,12 +67,20 @@ class FollowPath:
         goal_checker: GoalChecker,
         progress_checker: ProgressChecker,
         failure_tolerance: float = 0.3,
+        path_handler: PathHandler | None = None,
     ) -> None:
         self.controller = controller
         self.goal_checker = goal_checker
         self.progress_checker = progress_checker
         self.failure_tolerance = failure_tolerance
-        self._handler = PathHandler()
+        self.path_handler = path_handler
+        self._handler = PlanAhead()
+        if path_handler is not None:
+            self._handler = PlanAhead(
+                path_handler.search_distance,
+                has_cusps=not path_handler.sees_past_cusps,
+                rotation_angle=path_handler.rotation_angle,
+            )
         self._last_success: float | None = None
 
     def start(self, path: Array) -> None:
@@ -81,7 +91,7 @@ class FollowPath:
         InvalidPath
             It is empty or not finite.
         """
-        self._handler.set_plan(path)
+        self._set_plan(path)
         self.controller.reset()
         self.goal_checker.reset()
         self.progress_checker.reset()
@@ -102,11 +112,24 @@ class FollowPath:
         InvalidPath
             It is empty or not finite; the robot follows the last one.
         """
-        self._handler.set_plan(path)
+        self._set_plan(path)
         if new_goal:
             self.goal_checker.reset()
             self.progress_checker.reset()
             self.controller.reset()
+
+    def _set_plan(self, path: Array) -> None:
+        if self.path_handler is not None:
+            self.path_handler.check(path)
+        self._handler.set_plan(path)
+
+    def _ahead(self, pose: Array, plan_frame: Array) -> tuple[Array, Array, float]:
+        """Return the path that the controller sees, the goal, and the length of all that is left."""
+        chosen = self.path_handler
+        if chosen is not None:
+            return self._handler.ahead(pose, plan_frame, chosen.look_ahead, chosen.tolerances)
+        controller = self.controller
+        return self._handler.ahead(pose, plan_frame, controller.look_ahead, controller.inversion_tolerances)
 
     def step(
         self,
@@ -140,9 +163,7 @@ class FollowPath:
         """
         if not self._handler.has_plan:
             raise InvalidPath("there is no path to follow")
-        path, goal, distance = self._handler.ahead(
-            pose, plan_frame, self.controller.look_ahead, self.controller.inversion_tolerances
-        )
+        path, goal, distance = self._ahead(pose, plan_frame)
         if self.goal_checker.is_goal_reached(pose, goal, velocity):
             return FollowPathStep(np.zeros(3), True, distance, path)
         if not self.progress_checker.check(pose, now):

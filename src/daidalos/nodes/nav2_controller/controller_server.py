@@ -13,7 +13,7 @@ from daidalos.common.extensions import Kind
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.errors import NavigationError
-from daidalos.navigation.extensions import CONTROLLERS, GOAL_CHECKERS, PROGRESS_CHECKERS
+from daidalos.navigation.extensions import CONTROLLERS, GOAL_CHECKERS, PATH_HANDLERS, PROGRESS_CHECKERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import path_array, path_message, twist_message, velocity_of
 from daidalos.nodes.cycles import Cycle
@@ -81,6 +81,9 @@ class ControllerServerParameters(Parameters):
     progress_checker_plugins: tuple[str, ...] = parameter(
         ("progress_checker",), "Names of the progress checkers.", not_empty=True, unique=True, read_only=True
     )
+    path_handler_plugins: tuple[str, ...] = parameter(
+        (), "Names of the path handlers; where there is none, the controllers say what they see.", read_only=True
+    )
     progress_checker_plugin: str = parameter(
         "",
         "Name of the only progress checker, in parameter files of Humble; the list counts where empty.",
@@ -125,6 +128,7 @@ class ControllerServer(ManagedNode):
             ("controller_plugins", CONTROLLERS, "nav2_mppi_controller::MPPIController"),
             ("goal_checker_plugins", GOAL_CHECKERS, "nav2_controller::SimpleGoalChecker"),
             ("progress_checker_plugins", PROGRESS_CHECKERS, "nav2_controller::SimpleProgressChecker"),
+            ("path_handler_plugins", PATH_HANDLERS, "nav2_controller::FeasiblePathHandler"),
         )
         for group, kind, default in kinds:
             names = getattr(self._settings, group)
@@ -210,6 +214,7 @@ class ControllerServer(ManagedNode):
                 self._named("goal_checker_plugins", plugins[1]),
                 self._named("progress_checker_plugins", plugins[2]),
                 self._settings.failure_tolerance,
+                next(iter(self._plugins["path_handler_plugins"].values()), None),
             )
             task.start(path)
         return _Pursuit(task, plugins, request.path.header.frame_id or self._costmap.global_frame, path[-1])

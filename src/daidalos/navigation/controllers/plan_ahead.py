@@ -3,12 +3,15 @@
 import numpy as np
 
 from daidalos.common.arrays import Array
-from daidalos.common.pose2 import between, compose
+from daidalos.common.pose2 import between, compose, wrap
 from daidalos.navigation.errors import InvalidPath
 from daidalos.navigation.paths import distances_along, split_at_cusps
 
+SAME_PLACE = 1e-3
+"""Distance [m] between two poses of a plan below which the robot turns in place."""
 
-class PathHandler:
+
+class PlanAhead:
     """Plan without the part that the robot has passed.
 
     The robot is looked for only a limited way along the plan, so that where a plan comes near to itself the
@@ -18,9 +21,16 @@ class PathHandler:
     ----------
     max_robot_pose_search_dist : float
         How far [m] along the plan the robot may have got since the last cycle.
+    has_cusps : bool
+        Whether the robot has to come to cusps of the plan before it sees what follows.
+    rotation_angle : float, optional
+        Angle [rad] from which on the same holds for turns in place; for all with cusps where left out.
     """
 
-    def __init__(self, max_robot_pose_search_dist: float = 1.5) -> None:
+    def __init__(
+        self, max_robot_pose_search_dist: float = 1.5, *, has_cusps: bool = True, rotation_angle: float | None = None
+    ) -> None:
+        self._has_cusps, self._rotation_angle = has_cusps, rotation_angle
         self.max_robot_pose_search_dist = max_robot_pose_search_dist
         self._plan = np.zeros((0, 3))
         self._along = np.zeros(0)
@@ -47,8 +57,28 @@ class PathHandler:
         self._plan = plan.copy()
         self._along = distances_along(plan)
         self._passed = 0
-        lengths = [part.shape[0] - 1 for part in split_at_cusps(plan)] if plan.shape[0] > 2 else []
-        self._cusps = np.cumsum(lengths, dtype=np.int64)[:-1].tolist()
+        self._cusps = self._stops(plan) if plan.shape[0] > 2 else []
+
+    def _stops(self, plan: Array) -> list[int]:
+        """Return the poses that the robot has to come to before it sees what follows."""
+        if self._rotation_angle is None:
+            stops: list[int] = np.cumsum([part.shape[0] - 1 for part in split_at_cusps(plan)])[:-1].tolist()
+            return stops
+        steps = np.diff(plan[:, :2], axis=0)
+        reversals = np.flatnonzero(np.sum(steps[:-1] * steps[1:], axis=1) < 0.0) + 1
+        return sorted({*(reversals.tolist() if self._has_cusps else ()), *self._turns(plan, self._rotation_angle)})
+
+    def _turns(self, plan: Array, least: float) -> list[int]:
+        """Return the poses at which turns in place by at least an angle [rad] end."""
+        stays = np.hypot(*np.diff(plan[:, :2], axis=0).T) < SAME_PLACE
+        ends = []
+        turned = 0.0
+        for index, stay in enumerate(stays.tolist()):
+            turned = turned + float(wrap(plan[index + 1, 2] - plan[index, 2])) if stay else 0.0
+            is_last = index + 1 == stays.size or not stays[index + 1]
+            if stay and is_last and abs(turned) >= least:
+                ends.append(index + 1)
+        return ends
 
     def ahead(
         self, pose: Array, plan_frame: Array, look_ahead: float, inversion: tuple[float, float] | None = None

@@ -1,0 +1,1 @@
+"""Path handlers: how much of a plan a controller sees, one class each."""
