@@ -114,7 +114,7 @@ def test_csv_with_everything(tmp_path):
         ("a.mod", "MODULE a\n PROC main()\n ENDPROC\nENDMODULE", "has 0 points"),
         ("a.yaml", "poses: 1", "has no list 'poses'"),
         ("a.yaml", "poses: [{pose: {position: {x: 1}}}]", r"poses\[0\].pose.position must have finite x, y, z"),
-        ("a.step", "", "is of no known kind"),
+        ("a.iges", "", "is of no known kind"),
     ],
 )
 def test_what_is_wrong_is_one_line(name, text, message, tmp_path):

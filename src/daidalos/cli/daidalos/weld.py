@@ -25,7 +25,7 @@ class WeldVerb:
         commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
         plan = commands.add_parser("plan", help="correct a path, and write programs, points, figures and a report")
         plan.add_argument(
-            "path", type=Path, help="seam: .csv, .stl, .obj, .ply, .mod, .pgf, .src or .yaml (a ROS path)"
+            "path", type=Path, help="seam: .csv, .stl, .obj, .ply, .step, .mod, .pgf, .src or .yaml (a ROS path)"
         )
         add_robot(plan)
         plan.add_argument(
@@ -48,7 +48,13 @@ class WeldVerb:
             "--place", type=finite, nargs="+", default=[0.0] * 6, metavar="P",
             help="pose of the workpiece in the base: X Y Z [mm] A B C [deg] about z, y', x''",
         )  # fmt: skip
-        plan.add_argument("--pick", type=_point, action="append", metavar="X,Y,Z", help="a point of the seam on a mesh")
+        plan.add_argument(
+            "--pick",
+            type=_point,
+            action="append",
+            metavar="X,Y,Z",
+            help="a point of the seam on a mesh or a STEP model",
+        )
         plan.add_argument("--mesh-unit", choices=("mm", "m"), default="mm", help="unit of a mesh (default: mm)")
         plan.add_argument("--places", action="store_true", help="try other places of the workpiece")
         plan.add_argument("-o", "--output", type=Path, required=True, metavar="FOLDER", help="where the files go")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.errors import UserError
-from daidalos.industry.welding import seam_mesh
+from daidalos.industry.welding import seam_mesh, seam_step
 from daidalos.industry.welding.krl import read_krl
 from daidalos.industry.welding.rapid_paths import read_rapid
 from daidalos.industry.welding.ros_path import read_ros_path
@@ -25,7 +25,7 @@ PROGRAMS = {
     ".yaml": read_ros_path,
     ".yml": read_ros_path,
 }
-KINDS = (".csv", *seam_mesh.SUFFIXES, *PROGRAMS)
+KINDS = (".csv", *seam_mesh.SUFFIXES, *seam_step.SUFFIXES, *PROGRAMS)
 
 
 def read_seam(
@@ -34,14 +34,14 @@ def read_seam(
     mesh_unit: float = 1e-3,
     place: NDArray[np.float64] | None = None,
 ) -> Seam:
-    """Return the seam in a CSV file, a mesh, a program in RAPID or KRL, or a path of ROS.
+    """Return the seam in a CSV file, a mesh, a STEP model, a program in RAPID or KRL, or a path of ROS.
 
     Parameters
     ----------
     path : Path
         The file; its suffix says of which kind it is.
     picks : list of points
-        Where the seam of a mesh runs, in the mesh's unit.
+        Where the seam of a mesh or a STEP model runs, in the mesh's unit or in millimetres.
     mesh_unit : float
         Metres per unit of the mesh.
     place : array of shape (4, 4)
@@ -62,6 +62,8 @@ def read_seam(
             found = read_seam_csv(path)
         elif kind in seam_mesh.SUFFIXES:
             found = seam_mesh.read_seam_mesh(path, picks or [], mesh_unit)
+        elif kind in seam_step.SUFFIXES:
+            found = seam_step.read_seam_step(path, picks or [])
         else:
             found = Seam(*_without_normals(*PROGRAMS[kind](path)))
     except OSError as error:

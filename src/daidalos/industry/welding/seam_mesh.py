@@ -43,11 +43,49 @@ def read_seam_mesh(path: Path, picks: list[tuple[float, float, float]], scale: f
     if not len(edges):
         raise UserError(f"{path}: has no edge with more than {math.degrees(SHARP_ANGLE):g} deg between its faces")
     vertices = np.asarray(mesh.vertices)
+    check_picks(picks, vertices[edges], str(path))
+    return seam_along(vertices, edges, normals, picks, scale, str(path))
+
+
+def check_picks(picks: list[tuple[float, float, float]], ends: NDArray[np.float64], source: str) -> None:
+    """Raise a UserError where there are fewer than two picks; it proposes the longest of the edges' ends (m, 2, 3)."""
     if len(picks) < 2:
-        ends = vertices[edges[int(np.argmax(np.linalg.norm(np.diff(vertices[edges], axis=1)[:, 0], axis=1)))]]
-        first, second = (",".join(f"{value:g}" for value in end) for end in ends)
-        raise UserError(f"{path}: where does the seam run? Its longest sharp edge is --pick {first} --pick {second}")
-    indices = _shortest_path(vertices, edges, np.array(picks), str(path))
+        longest = ends[int(np.argmax(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))]
+        first, second = (",".join(f"{value:g}" for value in end) for end in longest)
+        raise UserError(f"{source}: where does the seam run? Its longest sharp edge is --pick {first} --pick {second}")
+
+
+def seam_along(
+    vertices: NDArray[np.float64],
+    edges: NDArray[np.int64],
+    normals: NDArray[np.float64],
+    picks: list[tuple[float, float, float]],
+    scale: float,
+    source: str,
+) -> Seam:
+    """Return the shortest seam along edges between picked points.
+
+    Parameters
+    ----------
+    vertices : array of shape (n, 3)
+        In the unit of the picks.
+    edges : array of shape (m, 2)
+        Indices of vertices.
+    normals : array of shape (m, 3)
+        Of the edges.
+    picks : list of points
+        At least two; see `check_picks`.
+    scale : float
+        Metres per unit.
+    source : str
+        Of the edges, for errors.
+
+    Raises
+    ------
+    UserError
+        Where no edges connect the points.
+    """
+    indices = _shortest_path(vertices, edges, np.array(picks), source)
     at_edge = {tuple(sorted(edge)): normal for edge, normal in zip(edges.tolist(), normals, strict=True)}
     along = np.array([at_edge[tuple(sorted(pair))] for pair in itertools.pairwise(indices)])
     at_points = np.concatenate([along[:1], along[:-1] + along[1:], along[-1:]])
