@@ -279,7 +279,7 @@ def workspace(tmp_path_factory):
           find_package(${name} REQUIRED)
         endforeach()
         add_library(frames_component SHARED src/frames.cpp)
-        ament_target_dependencies(frames_component rclcpp rclcpp_components tf2_ros tf2_geometry_msgs)
+        ament_target_dependencies(frames_component class_loader rclcpp rclcpp_components tf2_ros tf2_geometry_msgs)
         rclcpp_components_register_node(frames_component PLUGIN "frames::Frames" EXECUTABLE frames)
         add_executable(rotations src/rotations.cpp)
         target_link_libraries(rotations tf2::tf2)

@@ -33,7 +33,8 @@ _TOOLS = (
 _LIBRARIES = {
     "rosidl_runtime_cpp": "",
     "rclcpp": "builtin_interfaces rcl_interfaces rosgraph_msgs",
-    "rclcpp_components": "rclcpp",
+    "class_loader": "",  # found with rclcpp_components; what registers classes is in that
+    "rclcpp_components": "class_loader rclcpp",
     "tf2": "builtin_interfaces geometry_msgs",
     "tf2_geometry_msgs": "geometry_msgs tf2",
     "tf2_ros": "rclcpp tf2 tf2_msgs",

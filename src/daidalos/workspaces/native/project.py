@@ -15,7 +15,10 @@ from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.native.prefix import compilers, library_packages, write_interfaces
 from daidalos.workspaces.native.toolchain import Toolchain
 
-_MISSING = re.compile(r'package\s+configuration\s+file\s+provided\s+by\s+"([\w.-]+)"|Could NOT find (\w+)')
+_MISSING = re.compile(
+    r'package\s+configuration\s+file\s+provided\s+by\s+"([\w.-]+)"|Could NOT find (\w+)'
+    r"|passed\s+package\s+name\s+'([\w.-]+)'\s+was\s+not\s+found"
+)
 _NO_HEADER = re.compile(r"fatal error: '?([\w./+-]+)'?(?::| file not found)")
 
 
@@ -80,11 +83,17 @@ def configure(
     _forget_other_library(project)
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=dict(environment))
     if done.returncode:
-        missing = _MISSING.search(done.stderr)
+        missing = missing_package(done.stderr)
         if missing:
-            raise MissingPackage(missing[1] or missing[2])
+            raise MissingPackage(missing)
         raise WorkspaceError(f"CMake cannot configure the package:\n{done.stderr.strip()}")
     return done.stderr
+
+
+def missing_package(text: str) -> str | None:
+    """Return the package that CMake's complaints say is missing; None where they say something else."""
+    missing = _MISSING.search(text)
+    return next(name for name in missing.groups() if name) if missing else None
 
 
 def _forget_other_library(project: Project) -> None:
