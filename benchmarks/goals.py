@@ -124,6 +124,8 @@ GOALS = {
     "mapping.intel_5hz_rotation_deg": Goal(1.3),
     "mapping.fr079_with_offset_translation_m": Goal(0.036, theirs="0.056 graph mapping"),
     "mapping.fr079_with_offset_rotation_deg": Goal(0.8),
+    "stack.cores": Goal(0.25),
+    "stack.mb": Goal(200.0),
     "any_angle.rooms_mean_excess_percent": Goal(1.0),
     "any_angle.random_10_mean_excess_percent": Goal(1.0),
     "any_angle.streets_mean_excess_percent": Goal(1.0),

@@ -1,7 +1,7 @@
 """A simulated TurtleBot3 that navigates: simulator, robot, navigation with a map or SLAM, and RViz."""
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration, NotSubstitution, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
@@ -48,12 +48,17 @@ def generate_launch_description():
     return LaunchDescription(
         [
             *(DeclareLaunchArgument(name, default_value=text, description=what) for name, text, what in arguments),
-            included(
-                value("robot_launch"),
-                IfCondition(value("use_simulator")),
-                use_composition="False",
-                gui=NotSubstitution(value("headless")),
-                **{name: value(name) for name in ("world", "x_pose", "y_pose", "yaw")},
+            # In a scope of its own: arguments of an inclusion hold for what follows it as well.
+            GroupAction(
+                [
+                    included(
+                        value("robot_launch"),
+                        use_composition="False",
+                        gui=NotSubstitution(value("headless")),
+                        **{name: value(name) for name in ("world", "x_pose", "y_pose", "yaw")},
+                    )
+                ],
+                condition=IfCondition(value("use_simulator")),
             ),
             included(
                 in_package("nav2_bringup", "launch", "rviz_launch.py"),
