@@ -72,6 +72,7 @@ GOALS = {
     "rapid.public_files_parse_ms_worst": Goal(50.0),
     "rapid.statements_per_s": Goal(200_000.0, at_least=True),
     "rapid.check_command_s": Goal(0.5),
+    "rapid_fuzz.faults": Goal(0.0),
     "welding.correct_1000_points_s": Goal(1.0),
     "welding.convergence_m": Goal(1e-6),
     "welding.line_corrected_across_rms_mm": Goal(0.27, theirs="0.27 (measured)"),

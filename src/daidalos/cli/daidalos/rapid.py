@@ -140,6 +140,13 @@ def _add_program(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=CONDITION",
         help="input that is 1 where the tool's position in the base is so, such as diTouch=z<120 [mm]",
     )
+    parser.add_argument(
+        "--external",
+        action="append",
+        default=[],
+        metavar="AXIS",
+        help="external axis of the arm, such as a=linear,0,4000,1000 or b=turn,-180,180,90: range and speed [mm, deg]",
+    )
     parser.add_argument("--manual", action="store_true", help="manual mode: the tool is no faster than 250 mm/s")
     parser.add_argument("--max-time", type=float, metavar="S", help="end after so many seconds of robot time")
 

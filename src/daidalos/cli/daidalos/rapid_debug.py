@@ -60,6 +60,7 @@ def _load(arguments: dict[str, Any]) -> dict[str, Task]:
         io=[Path(one) for one in _texts(arguments.get("io"))],
         home=Path(arguments["home"]) if arguments.get("home") else None,
         sensor=[],
+        external=_texts(arguments.get("external")),
         manual=bool(arguments.get("manual")),
         max_time=arguments.get("maxTime"),
     )

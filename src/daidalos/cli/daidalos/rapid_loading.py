@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from datetime import datetime
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from daidalos.common.errors import UserError
 
@@ -63,7 +63,7 @@ def load_tasks(
                 print(problem.text(report.file), file=sys.stderr)
         if blocking:
             return None
-        robot = make_robot(arm_of(args.robot, name), args.sensor, board, sampling, announcement)
+        robot = make_robot(arm_of(args.robot, name), args.sensor, board, sampling, announcement, args.external)
         try:
             task = Task(modules, checker, robot, board, None, pace, datetime.now(), home, args.max_time, is_debugged)
         except FatalError as error:
@@ -91,31 +91,34 @@ def make_robot(
     board: Board,
     sampling: float = 0.0,
     announcement: Announcement | None = None,
+    external: Sequence[str] = (),
 ) -> Robot | None:
     """Return the arm of a name, or None without one; it shows its targets where it is said how.
 
     Raises
     ------
     UserError
-        Where no arm has this name, or a sensor is not one.
+        Where no arm has this name, or a sensor or an external axis is not one.
     """
     from daidalos.industry.rapid.runtime.announced_arm import AnnouncedArm
     from daidalos.industry.rapid.runtime.arm_robot import ArmRobot
+    from daidalos.industry.rapid.runtime.external_axes import parse_axis
     from daidalos.industry.rapid.runtime.sensors import parse_sensor
     from daidalos.industry.robots import arm_named
 
     if name is None:
-        if sensors:
-            raise UserError("--sensor needs an arm: add --robot, such as --robot irb120")
+        if sensors or external:
+            option = "--sensor" if sensors else "--external"
+            raise UserError(f"{option} needs an arm: add --robot, such as --robot irb120")
         return None
     try:
         arm = arm_named(name)
         conditions = dict(parse_sensor(text) for text in sensors)
+        axes = dict(parse_axis(text) for text in external)
     except ValueError as error:
         raise UserError(str(error)) from None
-    if announcement is None:
-        return ArmRobot(arm, sensors=conditions, set_signal=board.set, sampling=sampling)
-    return AnnouncedArm(arm, announcement, sensors=conditions, set_signal=board.set, sampling=sampling)
+    settings: dict[str, Any] = {"sensors": conditions, "set_signal": board.set, "sampling": sampling, "external": axes}
+    return ArmRobot(arm, **settings) if announcement is None else AnnouncedArm(arm, announcement, **settings)
 
 
 def _parse_signal(text: str) -> tuple[str, float]:

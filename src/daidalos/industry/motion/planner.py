@@ -388,6 +388,14 @@ class Planner:
         """Return the length of the whole path, from its first movement on [m]."""
         return self._length
 
+    def share(self) -> float:
+        """Return the share of the only movement that is done, 1 at rest."""
+        if self._profile is None or not self._movements:
+            return 0.0 if self._movements else 1.0
+        first = self._movements[0]
+        position = float(self._profile.at(np.array([self.now]))[0][0])
+        return min(max((position - first.offset) / first.curve.length, 0.0), 1.0)
+
     # State
 
     def joints_at(self, times: Array) -> Array:

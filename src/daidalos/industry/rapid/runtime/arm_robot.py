@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from daidalos.industry.motion.orientations import Array
 from daidalos.industry.motion.pieces import Limits, sample_curve, sample_wrist_path
 from daidalos.industry.motion.planner import Movement, PathRest, Planner
 from daidalos.industry.rapid.runtime.errors import FatalError, RapidError
+from daidalos.industry.rapid.runtime.external_axes import ExternalAxes, ExternalAxis
 from daidalos.industry.rapid.runtime.poses import Pose, pose_inverse, pose_product
 from daidalos.industry.rapid.runtime.robot import Event, Move, Robot, wobj_pose
 from daidalos.industry.robots import Arm
@@ -38,8 +39,6 @@ HOME = (0.0, 0.0, 0.0, 0.0, 30.0, 0.0)
 
 _RETURN_TOLERANCE = math.radians(0.1)
 """Distance of each axis from a kept path at which it is taken up [rad]."""
-
-_NO_AXES = [9e9] * 6
 
 
 @dataclass(frozen=True)
@@ -81,6 +80,8 @@ class ArmRobot:
         Sets a signal.
     sampling
         Seconds between two samples that are kept; 0 for none.
+    external
+        External axes by their letters; movements of them begin and end with a stop.
     """
 
     def __init__(
@@ -90,8 +91,10 @@ class ArmRobot:
         sensors: dict[str, Callable[[list[float]], float]] | None = None,
         set_signal: Callable[[str, float], None] | None = None,
         sampling: float = 0.0,
+        external: Mapping[str, ExternalAxis] | None = None,
     ) -> None:
         self.arm = arm
+        self._external = ExternalAxes(external or {})
         self.planner = Planner(arm, np.radians(joints))
         self._count = 0
         self.samples: list[Sample] = []
@@ -118,16 +121,39 @@ class ArmRobot:
 
     def order(self, move: Move) -> bool:
         """Take a movement."""
+        extax = move.target[1] if move.instruction == "MoveAbsJ" else move.target[3]
+        goal = self._external.goal(extax)
+        moves_external = not self._external.is_there(goal)
+        if moves_external and not self.planner.is_at_rest:
+            return False
         try:
             movement = self._movement(move)
+            if moves_external:
+                movement = self._with_external(movement, goal, move)
             is_taken = self.planner.append(movement)
         except MotionFault as fault:
             raise FatalError(str(fault)) from None
         if is_taken:
+            self._warn_of_external(extax, move.line)
+            self._external.go(goal)
             self._count += 1
             self._tool = movement.tool
             self._events += [(movement, event) for event in move.events]
         return is_taken
+
+    def _with_external(self, movement: Movement, goal: list[float], move: Move) -> Movement:
+        """Return a movement that takes the time that external axes need, and ends with a stop."""
+        seconds = self._external.seconds(goal, move.speed)
+        if movement.curve.length < SHORTEST:
+            raise FatalError("a movement of external axes alone does not run with an arm; move its tool too")
+        rate = min(movement.limits.rate, movement.curve.length / seconds)
+        return replace(movement, limits=replace(movement.limits, rate=rate), zone=None)
+
+    def _warn_of_external(self, extax: list[Any], line: str) -> None:
+        ignored = self._external.ignored(extax)
+        text = f"{line}: {', '.join(ignored)}: the arm has no such external axis; --external declares one"
+        if ignored and text not in self.planner.warnings:
+            self.planner.warnings.append(text)
 
     def _movement(self, move: Move) -> Movement:
         if not move.tool[0] or move.wobj[0]:
@@ -320,16 +346,19 @@ class ArmRobot:
         joints = self._joints()
         flange = _pose(forward(self.arm, joints))
         at = pose_product(pose_inverse(wobj_pose(wobj)), pose_product(flange, tool[1]))
-        return [at[0], at[1], [float(one) for one in confdata(self.arm, joints)], list(_NO_AXES)]
+        return [at[0], at[1], [float(one) for one in confdata(self.arm, joints)], self._extax()]
 
     def jointtarget(self) -> list[Any]:
         """Return the angles."""
-        return [np.degrees(self._joints()).tolist(), list(_NO_AXES)]
+        return [np.degrees(self._joints()).tolist(), self._extax()]
 
     @property
     def tool(self) -> Array:
         """Return the pose (4, 4) of the latest movement's tool on the flange [m]."""
         return self._tool
+
+    def _extax(self) -> list[float]:
+        return self._external.values(self.planner.share())
 
     def _tool_pose(self) -> Pose:
         return _pose(forward(self.arm, self._joints()) @ self._tool)
