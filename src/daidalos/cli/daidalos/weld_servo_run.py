@@ -102,7 +102,10 @@ def run_robot(args: argparse.Namespace) -> int:
             "correction_mm": [round(float(one), 4) for one in controller.correction[:3]],
             "axes_deg": [round(float(one), 4) for one in controller.axes],
         }
-    print(json.dumps(figures, indent=1) if args.json else "\n".join(f"{key}: {one}" for key, one in figures.items()))
+    if args.json:
+        print(json.dumps(figures, indent=1))
+    else:
+        print("\n".join(f"{key}: {'none' if one == '' else one}" for key, one in figures.items()))
     return 1 if controller.stopped else 0
 
 
