@@ -192,7 +192,7 @@ def test_retry_has_an_end() -> None:
         ("WaitDI di1, 1 \\MaxTime:=2;", "ERR_WAIT_MAXTIME: waited 2 s for di1 = 1"),
         ("WaitDI di1, 1;", "waits for di1 = 1 for ever: nothing else is left that could change it"),
         ('TPReadNum reg1, "n";', "ERR_TP_NO_CLIENT: nobody answers at the pendant"),
-        ("ArcLStart p0, v100, sm1, wd1, fine, tool0;", "'ArcLStart' runs on a controller only"),
+        ("PathLengthReset;", "'PathLengthReset' runs on a controller only"),
     ],
 )
 def test_errors_are_named_with_their_line(lines: str, message: str) -> None:
@@ -394,3 +394,8 @@ def test_unknown_procedure() -> None:
 
 def test_names_with_letters_that_python_takes_for_others() -> None:
     assert written('VAR num µ := 1; VAR num ª := 2; µ := µ + ª; TPWrite ""\\Num:=µ;') == ["3"]
+
+
+def test_an_assignment_to_a_signal_is_refused_with_its_line() -> None:
+    with pytest.raises(FatalError, match=r"test.mod:5: 'doA' is a signal; SetDO"):
+        load(module("SetDO doA, 1;\ndoA := 0;"))

@@ -51,7 +51,7 @@ class Operator:
         self.pendant = RapidPendant(parameter_overrides=given)
         self.state = State()
         self.node = node
-        node.create_subscription(State, "/rapid_pendant/state", self._take, LATCHED)
+        self._subscription = node.create_subscription(State, "/rapid_pendant/state", self._take, LATCHED)
         self._commands = node.create_publisher(String, "/rapid_pendant/command", 100)
         self.joint_jog = node.create_publisher(JointJog, "/rapid_pendant/jog_joint", 10)
         self.twist = node.create_publisher(TwistStamped, "/rapid_pendant/jog_twist", 10)
@@ -91,6 +91,7 @@ class Operator:
     def close(self) -> None:
         """End the node."""
         self._executor.shutdown()
+        self.node.destroy_subscription(self._subscription)
         self.pendant.destroy_node()
 
 

@@ -43,6 +43,9 @@ JOG_TIMEOUT_S = 0.2
 
 _PERIOD_S = 0.02
 _STATES_EVERY = 5
+_REPEATED_EVERY = 50
+"""Turns after which a state that has not changed is published again: once in a second."""
+
 _WINDOW = 15
 _TILTED = math.radians(20.0)
 """Greatest rate of rotation while jogging [rad/s]."""
@@ -301,7 +304,7 @@ class RapidPendant(Node):
         self._count += 1
         if self._count % _STATES_EVERY == 1:
             state = self._state()
-            if state != self._sent:
+            if state != self._sent or self._count % _REPEATED_EVERY == 1:
                 self._sent = state
                 self._states.publish(state)
 

@@ -111,7 +111,8 @@ class ExpressionTranslator:
         """Return the statement that assigns the text of a value."""
         if isinstance(target, tree.Variable):
             place = self.place(target.name)
-            assert place is not None
+            if place is None:
+                raise FatalError(f"'{target.name.text}' is a signal; SetDO, SetGO or SetAO sets it, not ':='")
             if not place.is_scalar:
                 return f"{place.read()}[:] = {value}"
             left = {"box": f"{place.name}[0]", "reference": f"{place.name}[0][{place.name}[1]]"}

@@ -10,6 +10,7 @@ from daidalos.industry.rapid.checking import Checker
 from daidalos.industry.rapid.expressions import ExpressionChecker
 from daidalos.industry.rapid.parsing import Parsed
 from daidalos.industry.rapid.reporting import Reporter
+from daidalos.industry.rapid.runtime.errors import FatalError
 from daidalos.industry.rapid.runtime.expressions import ExpressionTranslator
 from daidalos.industry.rapid.runtime.names import (
     Frame,
@@ -101,7 +102,20 @@ class _ModuleTranslator:
         self._count = 0
 
     def translate(self, node: tree.Routine) -> None:
-        """Translate a routine."""
+        """Translate a routine.
+
+        Raises
+        ------
+        FatalError
+            Where a statement cannot run, with ``file:line``.
+        """
+        try:
+            self._translate(node)
+        except FatalError as error:
+            file, line = self._place
+            raise FatalError(f"{file}:{line}: {error}") from None
+
+    def _translate(self, node: tree.Routine) -> None:
         self._go_to(node.start)
         self._scope_of(node)
         parameters = [f"a_{python_name(one.name.key)}=None" for one in node.parameters()]
