@@ -77,6 +77,7 @@ def test_a_run_in_the_cell_is_published(node: Node) -> None:
     line = heard["path"][-1].markers[0]
     assert len(line.points) == len(line.colors) > 50
     assert line.colors[-1].g > line.colors[0].g
+    assert line.color.a == 1.0
 
 
 @pytest.mark.slow

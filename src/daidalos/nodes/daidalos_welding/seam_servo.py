@@ -214,7 +214,8 @@ class SeamServo(Node):
 
     def _line(self) -> Marker:
         marker = Marker(header=self._header, ns="path", type=Marker.LINE_STRIP, action=Marker.ADD)
-        marker.scale.x = 0.5e-3
+        marker.scale.x = 1e-3
+        marker.color.a = 1.0
         marker.pose.orientation.w = 1.0
         marker.points = [point for point, _ in self._points]
         marker.colors = [colour for _, colour in self._points]
