@@ -150,7 +150,7 @@ def test_a_signal_needs_no_declaration_where_a_signal_is_expected() -> None:
 
 
 def test_a_name_in_a_call_with_unknown_parameters_is_still_looked_for_elsewhere() -> None:
-    lines = "ArcL p0, v100, sm1, wd1, fine, tGun; MoveL p0, v100, fine, tGun;"
+    lines = "ContactL p0, v100, sm1, wd1, fine, tGun; MoveL p0, v100, fine, tGun;"
     declarations = "PERS robtarget p0 := [[0,0,0],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];"
     assert messages(lines, declarations) == ["'tGun' is not declared"]
 

@@ -110,7 +110,7 @@ class ExternalAxes:
         return longest
 
     def go(self, goal: list[float]) -> None:
-        """Begin a movement."""
+        """Start a movement."""
         self._start, self._end = self._end, list(goal)
 
     def values(self, share: float) -> list[float]:
