@@ -40,3 +40,15 @@ describe("what is solid", () => {
     expect(object.userData.pickable).toBe(true);
   });
 });
+
+describe("points with colors of their own", () => {
+  it.each([Marker.LINE_LIST, Marker.LINE_STRIP, Marker.SPHERE_LIST, Marker.CUBE_LIST])(
+    "are visible where the marker has no color: type %s",
+    (type) => {
+      const told = marker(type, SIZE, CORNERS);
+      const colors = CORNERS.map(() => ({ r: 1, g: 0, b: 0, a: 0.5 }));
+      const object = markerObject({ ...told, colors, color: { r: 0, g: 0, b: 0, a: 0 } }, CONTEXT) as Mesh;
+      expect((object.material as { opacity: number }).opacity).toBe(0.5);
+    },
+  );
+});

@@ -164,14 +164,23 @@ function lines(marker: Marker): Object3D {
     vertexColors: true,
     worldUnits: true,
     linewidth: marker.scale.x,
-    transparent: marker.color.a < 1,
-    opacity: marker.color.a,
+    transparent: opacityOf(marker) < 1,
+    opacity: opacityOf(marker),
   });
   return new LineSegments2(geometry, style);
 }
 
+/** The marker's opacity; where each point has a color and the marker none, that of the first point, as in RViz. */
+function opacityOf({ color, colors }: Marker): number {
+  return color.a || (colors[0]?.a ?? 0);
+}
+
 function many(geometry: BufferGeometry, marker: Marker): Object3D {
-  const object = new InstancedMesh(geometry, material(marker.color), Math.max(1, marker.points.length));
+  const object = new InstancedMesh(
+    geometry,
+    material({ ...marker.color, a: opacityOf(marker) }),
+    Math.max(1, marker.points.length),
+  );
   const [matrix, color] = [new Matrix4(), new Color()];
   marker.points.forEach(({ x, y, z }, i) => {
     object.setMatrixAt(i, matrix.compose(new Vector3(x, y, z), new Quaternion(), new Vector3(1, 1, 1)));

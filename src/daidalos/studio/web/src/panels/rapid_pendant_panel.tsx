@@ -201,7 +201,17 @@ function Signals({ now, send }: Props) {
   ) : null;
 }
 
-function Command({ command, text, isEnabled, send }: { command: string; text: string; isEnabled: boolean; send: Send }) {
+function Command({
+  command,
+  text,
+  isEnabled,
+  send,
+}: {
+  command: string;
+  text: string;
+  isEnabled: boolean;
+  send: Send;
+}) {
   return (
     <button class="button" data-command={command} disabled={!isEnabled} onClick={() => send(command)}>
       {text}

@@ -27,7 +27,9 @@ function contrast(a: string, b: string): number {
 describe.each(["dark", "light"])("in the %s theme", (theme) => {
   const colors = colorsOf(theme);
   it.each(
-    ["text", "text-soft", "text-faint", "accent", "ok", "warning", "error"].flatMap((text) => ["surface", "raised"].map((on) => [text, on])),
+    ["text", "text-soft", "text-faint", "accent", "ok", "warning", "error"].flatMap((text) =>
+      ["surface", "raised"].map((on) => [text, on]),
+    ),
   )("--%s is legible on --%s", (text, on) => {
     expect(contrast(colors[text as string] as string, colors[on as string] as string)).toBeGreaterThanOrEqual(LEAST);
   });
