@@ -10,6 +10,8 @@ import importlib
 from collections.abc import Callable, Iterable
 from typing import Any, ParamSpec, TypeVar, overload
 
+from daidalos.common.compiler_memory import release_compiler_memory
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -88,4 +90,5 @@ def warm_up(package: str, progress: Progress = lambda share, step: None, users: 
     steps = importlib.import_module(f"{package}.warming").steps
     for share, step in steps() if users is None else steps(tuple(users)):
         progress(share, step)
+    release_compiler_memory()
     progress(1.0, "ready")
