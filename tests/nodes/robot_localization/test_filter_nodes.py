@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, Twist
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Log
@@ -17,6 +18,7 @@ from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
 from daidalos.common.parameters import ParameterError
+from daidalos.interfaces.library import BUILT_IN
 from daidalos.localization.errors import LocalizationError
 from daidalos.nodes.conversions import pose_message, quaternion_message
 from daidalos.nodes.robot_localization.ekf_node import EkfNode
@@ -236,3 +238,12 @@ def test_a_command_moves_the_prediction_until_it_is_old(stage: Set) -> None:
 def test_parameters_that_do_not_fit_are_refused(stage: Set, parameters: Any, error: type[Exception], text: str) -> None:
     with pytest.raises(error, match=text):
         Bench(stage, **parameters)
+
+
+@pytest.mark.parametrize("world", ["odom", "map"])
+def test_the_filters_of_the_example_with_satellites_start(stage: Set, world: str) -> None:
+    share, name = BUILT_IN / "robot_localization", f"ekf_filter_node_{world}"
+    sections = yaml.safe_load((share / "params" / "dual_ekf_navsat_example.yaml").read_text())
+    bench = Bench(stage, **sections[name]["ros__parameters"])
+    assert bench.node.get_parameter("world_frame").value == world
+    assert f'"{name}"' in (share / "launch" / "dual_ekf_navsat_example.launch.py").read_text()
