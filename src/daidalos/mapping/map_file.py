@@ -134,7 +134,7 @@ def save_map(
         sort_keys=False,
         default_flow_style=None,
     )
-    _write_together({image_path: image, yaml_path: description.encode()})
+    write_together({image_path: image, yaml_path: description.encode()})
     return yaml_path, image_path
 
 
@@ -218,7 +218,7 @@ def _origin(path: Path, fields: dict[str, Any]) -> tuple[float, float, float]:
     return (x, y, yaw)
 
 
-def _write_together(contents: dict[Path, bytes]) -> None:
+def write_together(contents: dict[Path, bytes]) -> None:
     """Write several files so that a failure keeps the old ones."""
     parts = {path: path.with_name(f".{path.name}.part") for path in contents}
     try:

@@ -1,0 +1,5 @@
+"""The stage that these tests use."""
+
+from nodes.stepped import stage
+
+__all__ = ["stage"]
