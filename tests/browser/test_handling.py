@@ -1,13 +1,16 @@
 """Handling of the studio's page: keyboards, widths of windows, closed panels, and what axe-core finds in each panel."""
 
 import json
+import os
 import re
+import signal
 from collections.abc import Iterator
 
 import pytest
 
 from browser.cdp import Chromium
 from daidalos.studio.server import StudioServer
+from end_to_end.processes import DAIDALOS, Command
 from places import REPOSITORY
 from studio.demo_robot import DemoRobot
 from studio.memory_source import MemorySource
@@ -126,3 +129,19 @@ def test_each_panel_passes_axe_in_both_themes(browser: Chromium, server: StudioS
 
 def test_the_panels_of_the_page_are_found() -> None:
     assert {"scene", "plot", "topics", "log", "simulation", "turtlesim"} <= set(PANELS)
+
+
+def test_a_stopped_server_is_shown_as_silent(browser: Chromium) -> None:
+    words = [*DAIDALOS, "studio", "--no-browser", "--port", "0"]
+    with Command(*words, domain=100 + os.getpid() % 100) as studio:
+        browser.open(studio.wait_for_line("^window: ").split()[1])
+        browser.wait_for(READY)
+        studio.send(signal.SIGSTOP)
+        try:
+            browser.wait_for("document.querySelector('[data-test=silent]')?.textContent.includes('silent')")
+        finally:
+            studio.send(signal.SIGCONT)
+        browser.wait_for(f"{READY} && !document.querySelector('[data-test=silent]')")
+        assert browser.errors == []
+        browser.open("about:blank")
+        assert studio.interrupt() == 0

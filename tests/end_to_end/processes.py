@@ -76,6 +76,10 @@ class Command:
         os.killpg(self._process.pid, signal.SIGINT)
         return self._ended(members)
 
+    def send(self, number: int) -> None:
+        """Send a signal to the command's own process."""
+        self._process.send_signal(number)
+
     def assert_no_traceback(self) -> None:
         """Check that nothing was printed that only a programmer understands."""
         if "Traceback" in self.text or "KeyboardInterrupt" in self.text:

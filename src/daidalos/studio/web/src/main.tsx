@@ -63,17 +63,26 @@ function Closed() {
   ) : null;
 }
 
-/** A message over all panels while the connection is lost. */
+const LOST = {
+  lost: ["Connection lost.", "The program that serves this page has ended or cannot be reached; trying again…"],
+  silent: ["The server is silent.", "It has said nothing for 3 s; what is shown here is old."],
+} as const;
+
+/** A message over all panels while the connection is lost, or nothing comes over it. */
 function Lost({ studio }: { studio: Studio }) {
-  return studio.session.link.value === "lost" ? (
-    <div class="lost" role="alert" data-test="lost">
+  const state = studio.session.link.value;
+  if (state !== "lost" && state !== "silent") {
+    return null;
+  }
+  const [what, more] = LOST[state];
+  return (
+    <div class="lost" role="alert" data-test={state}>
       <span class="spinner" />
       <span>
-        <strong>Connection lost.</strong> The program that serves this page has ended or cannot be reached; trying
-        again…
+        <strong>{what}</strong> {more}
       </span>
     </div>
-  ) : null;
+  );
 }
 
 /** The server that sent the page, unless the address names another: ?connect=ws://robot:8765 */

@@ -13,7 +13,12 @@ import type { Studio } from "./studio";
 import { attachedWorld } from "./test_hooks";
 import { theme, toggleTheme } from "./theme";
 
-const LINK_WORDS = { connecting: "Connecting", connected: "Connected", lost: "Reconnecting" } as const;
+const LINK_WORDS = {
+  connecting: "Connecting",
+  connected: "Connected",
+  silent: "Silent",
+  lost: "Reconnecting",
+} as const;
 
 interface Props {
   studio: Studio;

@@ -37,7 +37,7 @@ export interface StatusInfo {
   id?: string;
 }
 
-export type LinkState = "connecting" | "connected" | "lost";
+export type LinkState = "connecting" | "connected" | "silent" | "lost";
 
 export type ToWorker =
   | { kind: "open"; url: string }

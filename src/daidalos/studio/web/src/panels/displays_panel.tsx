@@ -134,7 +134,7 @@ function statusOf(studio: Studio, config: DisplayConfig): Status {
     return { level: "idle", text: "disabled" };
   }
   if (studio.session.link.value !== "connected" && config.settings.topic !== undefined) {
-    return { level: "idle", text: "not connected" };
+    return { level: "idle", text: studio.session.link.value === "silent" ? "the server is silent" : "not connected" };
   }
   if (DISPLAYS.find(config.type) === undefined) {
     return DISPLAYS.isComplete.value
