@@ -258,7 +258,7 @@ def test_files_by_name_and_path(tmp_path):
     (tmp_path / "bad.json").write_text("{")
     with pytest.raises(UserError, match=r"bad\.json:1: "):
         read_fixture("bad.json", "", tmp_path)
-    with pytest.raises(UserError, match="is no built-in fixture; did you mean 'zema_13_channel'"):
+    with pytest.raises(UserError, match="is no built-in fixture and no path of a file; did you mean 'zema_13_channel'"):
         read_fixture("zema_13_chanel")
     with pytest.raises(UserError, match="'8-channel' is no mode"):
         read_fixture("zema_13_channel", "8-channel")
