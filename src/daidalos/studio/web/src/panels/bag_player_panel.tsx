@@ -1,4 +1,4 @@
-// Bag player: the time line of a bag that `ros2 bag play` plays, with its speed, pauses and steps.
+// Player: the time line of a bag that `ros2 bag play` plays, with its speed, pauses and steps.
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Session } from "../contract";
