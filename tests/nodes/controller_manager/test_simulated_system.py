@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from control.control_robots import from_values
+from ros2_control.control_robots import from_values
 from daidalos.control.contracts import ControllerContext, HardwareContext
 from daidalos.control.errors import HardwareError, SwitchError
 from daidalos.control.manager import ControllerManager
