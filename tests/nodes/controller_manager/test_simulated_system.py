@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ros2_control.control_robots import from_values
 from daidalos.control.contracts import ControllerContext, HardwareContext
 from daidalos.control.errors import HardwareError, SwitchError
 from daidalos.control.manager import ControllerManager
@@ -19,6 +18,7 @@ from daidalos.nodes.controller_manager._simulated_system import SimulatedSystem
 from daidalos.samples.controllers import TrajectoryCommand, TrajectoryPoint, ValuesCommand
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.ros2_control import Ros2Control
+from ros2_control.control_robots import from_values
 
 INERTIA = '<inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/>'
 INTERFACES = "".join(f'<command_interface name="{one}"/>' for one in ("position", "velocity", "effort")) + "".join(
