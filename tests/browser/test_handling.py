@@ -124,6 +124,7 @@ def test_each_panel_passes_axe_in_both_themes(browser: Chromium, server: StudioS
             browser.press("d")
             browser.wait_for(f"document.documentElement.dataset.theme !== '{theme}'")
             browser.evaluate("Promise.all(document.getAnimations().map((each) => each.finished.catch(() => 0)))")
+    browser.open("about:blank")  # before its server ends
     assert found == []
 
 
@@ -134,8 +135,7 @@ def test_the_panels_of_the_page_are_found() -> None:
 def test_a_stopped_server_is_shown_as_silent(browser: Chromium) -> None:
     words = [*DAIDALOS, "studio", "--no-browser", "--port", "0"]
     with Command(*words, domain=100 + os.getpid() % 100) as studio:
-        browser.open(studio.wait_for_line("^window: ").split()[1])
-        browser.wait_for(READY)
+        show(browser, studio.wait_for_line("^window: ").split()[1])
         studio.send(signal.SIGSTOP)
         try:
             browser.wait_for("document.querySelector('[data-test=silent]')?.textContent.includes('silent')")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,8 @@ from daidalos.industry.assistance.laser_projector import LaserProjector, LaserPr
 from daidalos.nodes.daidalos_lighting.simulated_laser import SimulatedLaser
 
 from .test_simulated_head import free_port
+
+PATIENCE_S = 30.0
 
 
 @pytest.fixture
@@ -46,9 +49,11 @@ def picture(node: Node, simulated: SimulatedLaser) -> Callable[[Callable[[Marker
     executor.add_node(simulated)
 
     def wait(holds: Callable[[Marker], bool]) -> Marker:
-        for _ in range(2000):
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            before = len(found)
             executor.spin_once(timeout_sec=0.02)
-            if found and holds(found[-1].markers[0]):
+            if len(found) > before and holds(found[-1].markers[0]):
                 return found[-1].markers[0]
         raise AssertionError("no such picture")
 
