@@ -7,6 +7,7 @@ import json
 import re
 import ssl
 import threading
+import time
 
 import aiohttp
 import pytest
@@ -24,6 +25,7 @@ from daidalos.industry.rws.certificate import self_signed_context
 from daidalos.industry.rws.controller import VirtualController
 from daidalos.industry.rws.server import RwsServer
 
+PATIENCE_S = 30.0
 PROGRAM = """MODULE Cell
   PERS num count := 0;
   PERS string name := "Jan";
@@ -85,7 +87,8 @@ class Client:
             return answer.status, json.loads(text)["status"]["msg"] if text else ""
 
     async def until(self, path, name, value):
-        for _ in range(400):
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
             if (await self.get(path))[0][name] == value:
                 return
             await asyncio.sleep(0.01)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -25,6 +26,7 @@ from daidalos.industry.servoing.profile_sensor import COLUMNS, ProfileSensor
 from daidalos.industry.servoing.servo_cell import straight_program
 from daidalos.nodes.daidalos_welding.seam_servo import CONFIGURATION, SeamServo
 
+PATIENCE_S = 90.0
 SPEED = 0.05
 TOPICS: tuple[tuple[str, Any], ...] = (
     ("profile", PointCloud2), ("correction", Vector3Stamped), ("deviation", Float64), ("gap", Float64),
@@ -47,7 +49,8 @@ class Listener:
 
     def until(self, holds: Callable[[], bool]) -> None:
         """Spin until a condition holds."""
-        for _ in range(6000):
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
             if holds():
                 return
             self._executor.spin_once(timeout_sec=0.01)
