@@ -107,7 +107,7 @@ def crowd_parameters() -> str:
 
 
 def set_initial_pose(scenario: Scenario) -> None:
-    """Tell AMCL that the robot stands at the origin."""
+    """Publish the origin as the initial pose of AMCL."""
     from geometry_msgs.msg import PoseWithCovarianceStamped
 
     pose = PoseWithCovarianceStamped()
